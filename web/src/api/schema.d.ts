@@ -164,6 +164,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/schemas": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Schemas
+         * @description List the JSON Schemas of the documents that people write.
+         */
+        get: operations["list_schemas"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schemas/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Schema
+         * @description Return the JSON Schema of a kind of document; saved documents name its file.
+         */
+        get: operations["get_schema"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/units": {
         parameters: {
             query?: never;
@@ -342,7 +382,7 @@ export interface paths {
          * Save Scenario
          * @description Return the history of a bench as a scenario in TOML.
          *
-         *     It begins with the digest. Run headless, it gives the same bits.
+         *     Its second line has the digest. Run headless, it gives the same bits.
          */
         get: operations["save_scenario"];
         put?: never;
@@ -3013,10 +3053,7 @@ export interface components {
             name: string;
             /** Severity */
             severity: number;
-            /** Profile */
-            profile: {
-                [key: string]: unknown;
-            };
+            profile: components["schemas"]["Profile"];
             /**
              * Parameters
              * @description Its other parameters, chosen or default
@@ -3796,17 +3833,13 @@ export interface components {
              * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
-            device?: {
-                [key: string]: unknown;
-            };
+            device?: components["schemas"]["Device"];
             /**
              * Environment
              * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
-            environment?: {
-                [key: string]: unknown;
-            };
+            environment?: components["schemas"]["Environment"];
             /**
              * Start Hz
              * @default 200
@@ -4335,17 +4368,13 @@ export interface components {
              * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
-            device?: {
-                [key: string]: unknown;
-            };
+            device?: components["schemas"]["Device"];
             /**
              * Environment
              * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
-            environment?: {
-                [key: string]: unknown;
-            };
+            environment?: components["schemas"]["Environment"];
         };
         /**
          * DeviceCard
@@ -4363,9 +4392,7 @@ export interface components {
                 [key: string]: number;
             };
             /** Parameters */
-            parameters: {
-                [key: string]: unknown;
-            };
+            parameters: components["schemas"]["Device"];
             /**
              * Plants
              * @description Plants that can be used with this device
@@ -4373,10 +4400,10 @@ export interface components {
             plants: string[];
         };
         /**
-         * Devices
+         * DeviceList
          * @description Every device of the catalogue, and the choices of a drawing.
          */
-        Devices: {
+        DeviceList: {
             /** Devices */
             devices: components["schemas"]["DeviceCard"][];
             /** Geometry */
@@ -4538,6 +4565,26 @@ export interface components {
             why: string | null;
         };
         /**
+         * ErrorBody
+         * @description An error: one line, the field at fault, a hint.
+         */
+        ErrorBody: {
+            /** Code */
+            code: string;
+            /** Message */
+            message: string;
+            /**
+             * Field
+             * @default
+             */
+            field?: string;
+            /**
+             * Hint
+             * @default
+             */
+            hint?: string;
+        };
+        /**
          * Estimate
          * @description A mean over cases and its standard error; cases do not depend on one another, samples of one case do.
          */
@@ -4615,9 +4662,7 @@ export interface components {
              * Command
              * @description The command, as an event of a scenario if it is to the board
              */
-            command?: {
-                [key: string]: unknown;
-            } | null;
+            command?: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | null;
             /** Old */
             old?: unknown;
             /** New */
@@ -4937,7 +4982,7 @@ export interface components {
          */
         ForAll: {
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             /**
              * Members
              * @description Ids of students; null: the whole class
@@ -5136,6 +5181,38 @@ export interface components {
             points: number | null;
         };
         /**
+         * Grade
+         * @description A sheet of a student.
+         */
+        Grade: {
+            /** Student */
+            student: string;
+            /** Member */
+            member: string;
+            /** Sheet */
+            sheet: string;
+            /** Title */
+            title: string;
+            /** Done */
+            done: boolean;
+            /** Points */
+            points: number;
+            /** Of */
+            of: number;
+            /** Recordings */
+            recordings: string[];
+            /** Steps */
+            steps: components["schemas"]["StepGrade"][];
+        };
+        /**
+         * GradeList
+         * @description The work of the students of a class at sheets.
+         */
+        GradeList: {
+            /** Grades */
+            grades: components["schemas"]["Grade"][];
+        };
+        /**
          * Hand
          * @description The hand of a student.
          */
@@ -5147,21 +5224,6 @@ export interface components {
             raised: boolean;
         };
         /**
-         * HandIn
-         * @description Values of an answer.
-         */
-        HandIn: {
-            /** Seed */
-            seed: number;
-            /**
-             * Hand In
-             * @description Fields of the answer; left out: the defaults
-             */
-            hand_in: {
-                [key: string]: number | string;
-            };
-        };
-        /**
          * Hands
          * @description Hands raised in the room, for each answer.
          */
@@ -5170,10 +5232,10 @@ export interface components {
             counts: number[];
         };
         /**
-         * Heal
+         * HealFaults
          * @description Take faults away.
          */
-        Heal: {
+        HealFaults: {
             /**
              * At Sample
              * @description the sample at which the command takes effect
@@ -5181,7 +5243,7 @@ export interface components {
             at_sample?: number | null;
             /**
              * At Ms
-             * @description the device time at which the command takes effect
+             * @description the device time at which the command takes effect, ms
              */
             at_ms?: number | null;
             /**
@@ -5189,7 +5251,10 @@ export interface components {
              * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
-            /** Heal */
+            /**
+             * Heal
+             * @description faults to take away, by name, or all of them
+             */
             heal: string[] | "all";
         };
         /**
@@ -5265,9 +5330,7 @@ export interface components {
              * @description Library id, TOML text, or document
              * @default ch5-seven-step
              */
-            scenario?: string | {
-                [key: string]: unknown;
-            };
+            scenario?: string | components["schemas"]["Scenario"];
             /**
              * Shows
              * @description Show the diagnosers; the question is then whether to trust them
@@ -5290,9 +5353,7 @@ export interface components {
              * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
-            device?: {
-                [key: string]: unknown;
-            };
+            device?: components["schemas"]["Device"];
             /**
              * Hypotheses
              * @description Factors on the device
@@ -5315,31 +5376,24 @@ export interface components {
          * @description One model of the bank, as factors on the nominal device.
          */
         Hypothesis: {
-            /**
-             * Name
-             * @description a short name, without spaces or dots
-             */
+            /** @description a short name, without spaces or dots */
             name: string;
             /**
-             * Mass
              * @description mass over nominal
              * @default 1
              */
             mass?: number;
             /**
-             * Stiffness
              * @description stiffness over nominal
              * @default 1
              */
             stiffness?: number;
             /**
-             * Damping
              * @description damping over nominal
              * @default 1
              */
             damping?: number;
             /**
-             * Gain
              * @description drive gain over nominal
              * @default 1
              */
@@ -5421,7 +5475,7 @@ export interface components {
             at_sample?: number | null;
             /**
              * At Ms
-             * @description the device time at which the command takes effect
+             * @description the device time at which the command takes effect, ms
              */
             at_ms?: number | null;
             /**
@@ -5429,11 +5483,18 @@ export interface components {
              * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
-            /** Fault */
+            /**
+             * Fault
+             * @description name of the fault
+             */
             fault: string;
-            /** Severity */
+            /**
+             * Severity
+             * @description size of the fault, in its own unit
+             */
             severity: number;
             /**
+             * @description how the severity comes
              * @default {
              *       "kind": "step",
              *       "duration_ms": 5,
@@ -5750,7 +5811,7 @@ export interface components {
             at_sample?: number | null;
             /**
              * At Ms
-             * @description the device time at which the command takes effect
+             * @description the device time at which the command takes effect, ms
              */
             at_ms?: number | null;
             /**
@@ -5998,10 +6059,10 @@ export interface components {
             phase_deg: number;
         };
         /**
-         * Members
+         * MemberList
          * @description The students of a class in the order in which they joined, each with a small picture of the bench.
          */
-        Members: {
+        MemberList: {
             /** Members */
             members: components["schemas"]["Tile"][];
         };
@@ -6087,6 +6148,21 @@ export interface components {
             jumps: number;
         };
         /**
+         * NewAttempt
+         * @description Values of an answer.
+         */
+        NewAttempt: {
+            /** Seed */
+            seed: number;
+            /**
+             * Hand In
+             * @description Fields of the answer; left out: the defaults
+             */
+            hand_in: {
+                [key: string]: number | string;
+            };
+        };
+        /**
          * NewBallot
          * @description The answer of a student.
          */
@@ -6113,9 +6189,7 @@ export interface components {
              * Scenario
              * @description Library id, TOML text, or document
              */
-            scenario: string | {
-                [key: string]: unknown;
-            };
+            scenario: string | components["schemas"]["Scenario"];
             /**
              * Set
              * @description Values by dotted path; they replace values of the scenario
@@ -6215,9 +6289,7 @@ export interface components {
              * Scenario
              * @description Library id, TOML text, or document
              */
-            scenario?: string | {
-                [key: string]: unknown;
-            } | null;
+            scenario?: string | components["schemas"]["Scenario"] | null;
             /**
              * Layout
              * @description Layout of the page, with its cursors
@@ -6247,9 +6319,7 @@ export interface components {
              * Scenario
              * @description Library id, TOML text, or document
              */
-            scenario: string | {
-                [key: string]: unknown;
-            };
+            scenario: string | components["schemas"]["Scenario"];
             /**
              * Set
              * @description Values by dotted path; they replace values of the scenario
@@ -6312,9 +6382,7 @@ export interface components {
              * Sweep
              * @description Campaign as TOML text or as a document
              */
-            sweep: string | {
-                [key: string]: unknown;
-            };
+            sweep: string | components["schemas"]["Campaign"];
             /**
              * Label
              * @description Name for the campaign, at most 120 characters
@@ -6351,9 +6419,7 @@ export interface components {
              * Scenario
              * @description Library id, TOML text, or document
              */
-            scenario?: string | {
-                [key: string]: unknown;
-            } | null;
+            scenario?: string | components["schemas"]["Scenario"] | null;
             /**
              * Bench
              * @description Id of a live bench with the scenario, in place of it
@@ -6719,9 +6785,7 @@ export interface components {
              * Command
              * @description As an event of a scenario
              */
-            command: {
-                [key: string]: unknown;
-            };
+            command: components["schemas"]["ResetTrip"] | components["schemas"]["HealFaults"] | components["schemas"]["Inject"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"];
         };
         /**
          * Play
@@ -6888,26 +6952,22 @@ export interface components {
          */
         Profile: {
             /**
-             * Kind
              * @description how the severity comes
              * @default step
              * @enum {string}
              */
             kind?: "step" | "ramp" | "intermittent";
             /**
-             * Duration Ms
-             * @description length of the ramp
+             * @description length of the ramp, ms
              * @default 5
              */
             duration_ms?: number;
             /**
-             * Period Ms
-             * @description period of an intermittent fault
+             * @description period of an intermittent fault, ms
              * @default 2
              */
             period_ms?: number;
             /**
-             * Duty
              * @description share of the period in which an intermittent fault is on
              * @default 0.5
              */
@@ -6937,7 +6997,10 @@ export interface components {
          * @description A question to a class before the answer is shown: which lane of a diagnoser rises, or one of some answers.
          */
         Question: {
-            /** Text */
+            /**
+             * Text
+             * @description the question
+             */
             text: string;
             /**
              * Answers
@@ -7187,7 +7250,7 @@ export interface components {
             at_sample?: number | null;
             /**
              * At Ms
-             * @description the device time at which the command takes effect
+             * @description the device time at which the command takes effect, ms
              */
             at_ms?: number | null;
             /**
@@ -7197,6 +7260,7 @@ export interface components {
             when?: string | null;
             /**
              * Reset Trip
+             * @description leave the tripped state
              * @constant
              */
             reset_trip: true;
@@ -7328,8 +7392,11 @@ export interface components {
             id: string;
             /** Key */
             key: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /** Title */
@@ -7362,14 +7429,8 @@ export interface components {
              * @default []
              */
             changed?: components["schemas"]["ChangedValue"][];
-            /** Summary */
-            summary: {
-                [key: string]: unknown;
-            } | null;
-            /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            summary: components["schemas"]["RunSummary"] | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * RunComparison
@@ -7382,6 +7443,53 @@ export interface components {
             figures: components["schemas"]["FigureRow"][];
             /** Signals */
             signals: components["schemas"]["RunSignal"][];
+        };
+        /**
+         * RunExpectation
+         * @description An expectation of the scenario, and the measured value.
+         */
+        RunExpectation: {
+            /** Metric */
+            metric: string;
+            /** Published */
+            published: string;
+            /** Expected */
+            expected: string;
+            /** Measured */
+            measured: number | null;
+            /** Ok */
+            ok: boolean;
+            /** Note */
+            note: string;
+            /**
+             * Expected Words
+             * @description The expected value in words, with its unit
+             */
+            expected_words?: string;
+            /** Published Value */
+            published_value?: number | null;
+            /** Verdict */
+            verdict?: string | null;
+            /**
+             * Open Loop
+             * @description Figure with the open loop in place of the controller
+             */
+            open_loop?: number | null;
+            /**
+             * Pid
+             * @description Figure with a PID in its place
+             */
+            pid?: number | null;
+            /**
+             * Comparator
+             * @description Name of this PID
+             */
+            comparator?: string;
+            /**
+             * Pid Too
+             * @description Whether this PID meets the claim too
+             */
+            pid_too?: boolean;
         };
         /**
          * RunList
@@ -7400,6 +7508,71 @@ export interface components {
             name: string;
             /** Unit */
             unit: string;
+        };
+        /**
+         * RunSummary
+         * @description Figures of a run and verdicts on them; with several seeds, figures are means.
+         */
+        RunSummary: {
+            /** Scenario */
+            scenario: string;
+            /** Title */
+            title: string;
+            /** Source */
+            source: string;
+            /** Claim */
+            claim: string;
+            /** Verdict */
+            verdict: string | null;
+            /**
+             * Seed
+             * @description The first seed
+             */
+            seed: number;
+            /** Ticks */
+            ticks: number;
+            /** Dt S */
+            dt_s: number;
+            /** Elapsed S */
+            elapsed_s: number;
+            /** Digest */
+            digest: string;
+            trip: components["schemas"]["Trip"] | null;
+            /** Warnings */
+            warnings: string[];
+            /**
+             * Metrics
+             * @description Figures by name
+             */
+            metrics: {
+                [key: string]: number;
+            };
+            /** Expectations */
+            expectations: components["schemas"]["RunExpectation"][];
+            /**
+             * Ok
+             * @description Whether all expectations hold
+             */
+            ok: boolean;
+            /**
+             * Seeds
+             * @description The first and the last of several seeds
+             */
+            seeds?: number[];
+            /**
+             * Digests
+             * @description The digest of each seed
+             */
+            digests?: string[];
+            /** Tripped Runs */
+            tripped_runs?: number;
+            /**
+             * Metrics Std
+             * @description Standard deviations by name of figure
+             */
+            metrics_std?: {
+                [key: string]: number;
+            };
         };
         /**
          * RunTrace
@@ -7506,9 +7679,7 @@ export interface components {
              * Scenario
              * @description Library id, TOML text, or document
              */
-            scenario: string | {
-                [key: string]: unknown;
-            };
+            scenario: string | components["schemas"]["Scenario"];
         };
         /**
          * ScenarioText
@@ -7526,6 +7697,29 @@ export interface components {
              * @description Parts of its claims that are not read or cannot be judged
              */
             warnings: string[];
+        };
+        /**
+         * SchemaCard
+         * @description A JSON Schema in a list.
+         */
+        SchemaCard: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+            /**
+             * Url
+             * @description Its address, which is its $id too
+             */
+            url: string;
+        };
+        /**
+         * SchemaList
+         * @description The JSON Schemas.
+         */
+        SchemaList: {
+            /** Schemas */
+            schemas: components["schemas"]["SchemaCard"][];
         };
         /**
          * Scores
@@ -7642,31 +7836,6 @@ export interface components {
             };
         };
         /**
-         * Set
-         * @description Set parameters by their paths, all in one tick.
-         */
-        Set: {
-            /**
-             * At Sample
-             * @description the sample at which the command takes effect
-             */
-            at_sample?: number | null;
-            /**
-             * At Ms
-             * @description the device time at which the command takes effect
-             */
-            at_ms?: number | null;
-            /**
-             * When
-             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
-             */
-            when?: string | null;
-            /** Set */
-            set: {
-                [key: string]: unknown;
-            };
-        };
-        /**
          * SetName
          * @description The name of a set.
          */
@@ -7676,6 +7845,34 @@ export interface components {
              * @description Name, which no other set may have
              */
             name: string;
+        };
+        /**
+         * SetValues
+         * @description Set parameters by their paths, all in one tick.
+         */
+        SetValues: {
+            /**
+             * At Sample
+             * @description the sample at which the command takes effect
+             */
+            at_sample?: number | null;
+            /**
+             * At Ms
+             * @description the device time at which the command takes effect, ms
+             */
+            at_ms?: number | null;
+            /**
+             * When
+             * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
+             */
+            when?: string | null;
+            /**
+             * Set
+             * @description values by dotted path
+             */
+            set: {
+                [key: string]: unknown;
+            };
         };
         /**
          * SheetBrief
@@ -7908,9 +8105,15 @@ export interface components {
          * @description A stretch of device time.
          */
         Span: {
-            /** From Ms */
+            /**
+             * From Ms
+             * @description where it begins, ms
+             */
             from_ms: number;
-            /** Until Ms */
+            /**
+             * Until Ms
+             * @description where it ends, ms
+             */
             until_ms: number;
         };
         /**
@@ -7939,17 +8142,13 @@ export interface components {
              * @description Id of the catalogue, and values that replace its values
              * @default {}
              */
-            device?: {
-                [key: string]: unknown;
-            };
+            device?: components["schemas"]["Device"];
             /**
              * Environment
              * @description Temperature, pressure, humidity; left out: the usual values
              * @default {}
              */
-            environment?: {
-                [key: string]: unknown;
-            };
+            environment?: components["schemas"]["Environment"];
             /**
              * Seed
              * @default 1
@@ -8068,6 +8267,42 @@ export interface components {
              * @description Number with its unit, or id of an option
              */
             answer: string;
+        };
+        /**
+         * StepGrade
+         * @description A step of a student's sheet.
+         */
+        StepGrade: {
+            /** Step */
+            step: string;
+            /** Kind */
+            kind: string;
+            /**
+             * State
+             * @description done, left out, or open
+             */
+            state: string;
+            /**
+             * Earned
+             * @description Points before losses; points of a prediction once it is judged
+             */
+            earned: number;
+            /**
+             * Lost
+             * @description Points that wrong answers and hints cost
+             */
+            lost: number;
+            /** Of */
+            of: number;
+            /** Answers */
+            answers: string[];
+            /** Reasons */
+            reasons: string[];
+            /**
+             * Tick
+             * @description Tick of the bench at which it was done
+             */
+            tick: number;
         };
         /**
          * StepPeriod
@@ -8238,8 +8473,11 @@ export interface components {
         SweepRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Name */
             name: string;
             /** Title */
@@ -8269,10 +8507,7 @@ export interface components {
             created: string;
             /** Finished */
             finished: string | null;
-            /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * SweptSine
@@ -8326,7 +8561,7 @@ export interface components {
             at_sample?: number | null;
             /**
              * At Ms
-             * @description the device time at which the command takes effect
+             * @description the device time at which the command takes effect, ms
              */
             at_ms?: number | null;
             /**
@@ -8334,10 +8569,14 @@ export interface components {
              * @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on
              */
             when?: string | null;
-            /** Switch */
+            /**
+             * Switch
+             * @description name of the controller that drives from then on
+             */
             switch: string;
             /**
              * Cold
+             * @description start it anew, not as it ran in shadow
              * @default false
              */
             cold?: boolean;
@@ -8377,8 +8616,11 @@ export interface components {
         ThresholdRun: {
             /** Id */
             id: string;
-            /** State */
-            state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled" | "aborted";
             /** Scenario Id */
             scenario_id: string;
             /**
@@ -8388,10 +8630,7 @@ export interface components {
             progress?: number;
             /** @description Null until it is done */
             found?: components["schemas"]["Threshold"] | null;
-            /** Error */
-            error: {
-                [key: string]: unknown;
-            } | null;
+            error: components["schemas"]["ErrorBody"] | null;
         };
         /**
          * ThresholdTurn
@@ -8975,7 +9214,7 @@ export interface components {
             /** Id */
             id: string;
             /** Command */
-            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+            command: components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
         };
         /**
          * Pong
@@ -9165,26 +9404,6 @@ export interface components {
             is_short: boolean;
         };
         /**
-         * ErrorBody
-         * @description An error: one line, the field at fault, a hint.
-         */
-        ErrorBody: {
-            /** Code */
-            code: string;
-            /** Message */
-            message: string;
-            /**
-             * Field
-             * @default
-             */
-            field?: string;
-            /**
-             * Hint
-             * @default
-             */
-            hint?: string;
-        };
-        /**
          * ErrorMessage
          * @description A message of the client was refused; the connection stays.
          */
@@ -9198,10 +9417,10 @@ export interface components {
             error: components["schemas"]["ErrorBody"];
         };
         /**
-         * Events
+         * EventsMessage
          * @description Events since the last such message, numbered without gaps.
          */
-        Events: {
+        EventsMessage: {
             /**
              * Type
              * @default events
@@ -9471,7 +9690,7 @@ export interface components {
             dropped_frames: number;
         };
         /** ServerMessage */
-        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["Events"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
+        ServerMessage: components["schemas"]["Hello"] | components["schemas"]["Status"] | components["schemas"]["EventsMessage"] | components["schemas"]["Narrated"] | components["schemas"]["CaptureList"] | components["schemas"]["Reply"] | components["schemas"]["ErrorMessage"] | components["schemas"]["Notice"] | components["schemas"]["Ping"];
         /**
          * ErrorReply
          * @description The one error shape of every answer.
@@ -9508,8 +9727,5435 @@ export interface components {
              */
             seconds_left?: number | null;
         };
+        /**
+         * AdaptiveForgettingIdentifier
+         * @description Least squares, adaptive forgetting: Recursive least squares that forgets when its innovations say so (5.4.1).
+         */
+        AdaptiveForgettingIdentifier: {
+            /**
+             * @description Least squares, adaptive forgetting: Recursive least squares that forgets when its innovations say so (5.4.1). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "adaptive_forgetting";
+            /**
+             * @description window of the excitation, ms
+             * @default 20
+             */
+            excitation_window_ms?: number;
+            /**
+             * @description least relative excitation that counts as identifiable
+             * @default 1e-9
+             */
+            least_excitation?: number;
+            /**
+             * @description estimate; off holds the estimate, and on again trusts it no longer
+             * @default true
+             */
+            enabled?: boolean;
+            /**
+             * @description covariance at the start, as a multiple of I
+             * @default 100000000
+             */
+            initial_covariance?: number;
+            /**
+             * @description largest trace of the covariance, 0 for 1e10
+             * @default 10000000000
+             */
+            covariance_limit?: number;
+            /**
+             * @description estimate at the start
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description set the factor at once, step towards it (corrected), or as printed
+             * @default direct
+             * @enum {string}
+             */
+            reading?: "direct" | "step" | "printed";
+            /** @description standard deviation of the innovation of a perfect estimate; from the sensor's noise unless given, µm */
+            innovation_um?: number | null;
+            /**
+             * @description samples the ratio R looks back, samples
+             * @default 3
+             */
+            memory_samples?: number;
+            /**
+             * @description ratio R above which it forgets
+             * @default 5
+             */
+            gate?: number;
+            /**
+             * @description smallest forgetting factor
+             * @default 0.2
+             */
+            least_forgetting?: number;
+            /**
+             * @description step mu of the other readings
+             * @default 0.0001
+             */
+            step_size?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AdaptiveRateController
+         * @description Adaptive control with rate estimate: Follows two sines of different frequencies with estimates of stiffness, damping and rate.
+         */
+        AdaptiveRateController: {
+            /**
+             * @description Adaptive control with rate estimate: Follows two sines of different frequencies with estimates of stiffness, damping and rate. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "adaptive_rate";
+            /** @description amplitude along x; 1 um, or what 400 uN bend the spring by, unless given, µm */
+            amplitude_x_um?: number | null;
+            /** @description amplitude along y; 1.2 of that along x unless given, µm */
+            amplitude_y_um?: number | null;
+            /** @description frequency along x; 0.2213 of the axis frequency unless given, Hz */
+            frequency_x_hz?: number | null;
+            /** @description frequency along y; 1.2247 of that along x unless given, Hz */
+            frequency_y_hz?: number | null;
+            /** @description gain gamma of the velocity error; 1.061 of the pace unless given, 1/ms */
+            velocity_gain?: number | null;
+            /** @description gain g_K; 1.125 of the squared pace unless given, 1/(µm²·ms²) */
+            stiffness_gain?: number | null;
+            /**
+             * @description gain g_D, of the damping, 1/µm²
+             * @default 2
+             */
+            cross_gain?: number;
+            /**
+             * @description gain g_O, 1/µm²
+             * @default 1
+             */
+            rate_gain?: number;
+            /**
+             * @description bandwidth of the low-pass behind the rate, Hz
+             * @default 30
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AdrcController
+         * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer.
+         */
+        AdrcController: {
+            /**
+             * @description Active disturbance rejection (ADRC): Linear active disturbance rejection (Han 2009; Gao 2003), with an extended state observer. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "adrc";
+            /**
+             * @description omega_c over w0
+             * @default 1
+             */
+            controller_bandwidth?: number;
+            /**
+             * @description omega_o over w0
+             * @default 5
+             */
+            observer_bandwidth?: number;
+            /**
+             * @description model of the observer: the nominal device, or a mass without damping and spring
+             * @default nominal
+             * @enum {string}
+             */
+            plant?: "nominal" | "integrators";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AllanReadOut
+         * @description Allan deviation: Allan deviation of the estimated rate, one figure for each octave of averaging time; pairs overlap in part.
+         */
+        AllanReadOut: {
+            /**
+             * @description Allan deviation: Allan deviation of the estimated rate, one figure for each octave of averaging time; pairs overlap in part. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "allan";
+            /**
+             * @description shortest averaging time, in whole samples, ms
+             * @default 1
+             */
+            interval_ms?: number;
+            /**
+             * @description start of the run that is left out, ms
+             * @default 0
+             */
+            skip_ms?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AnchoredDiagnoser
+         * @description Anchored self-tuning banks: Each bank estimates, held to its hypothesis as by a spring, and is weighed by its predictions.
+         */
+        AnchoredDiagnoser: {
+            /**
+             * @description Anchored self-tuning banks: Each bank estimates, held to its hypothesis as by a spring, and is weighed by its predictions. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "anchored";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on the assumed variance
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description forgetting factor
+             * @default 0.86
+             */
+            forgetting?: number;
+            /**
+             * @description weight rho of the hypothesis
+             * @default 100
+             */
+            anchor?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ArxBankDiagnoser
+         * @description Bank of difference equations: Banks that were tuned beforehand, each to its own sub-system, and are fixed now.
+         */
+        ArxBankDiagnoser: {
+            /**
+             * @description Bank of difference equations: Banks that were tuned beforehand, each to its own sub-system, and are fixed now. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "arx_bank";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on the assumed variance
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description pass both signals through 1/A(q) of the healthy device
+             * @default false
+             */
+            prefilter?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AxesBankDiagnoser
+         * @description Kalman bank of two axes: A Kalman filter of both axes for each hypothesis, which also estimates the rate; weighed by its residuals.
+         */
+        AxesBankDiagnoser: {
+            /**
+             * @description Kalman bank of two axes: A Kalman filter of both axes for each hypothesis, which also estimates the rate; weighed by its residuals. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "axes_bank";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "stiffness": 1,
+             *         "mass": 1,
+             *         "damping": 1,
+             *         "second_stiffness": 1,
+             *         "quadrature_dps": 0,
+             *         "drive_gain": 1
+             *       },
+             *       {
+             *         "name": "quadrature+500",
+             *         "stiffness": 1,
+             *         "mass": 1,
+             *         "damping": 1,
+             *         "second_stiffness": 1,
+             *         "quadrature_dps": 500,
+             *         "drive_gain": 1
+             *       },
+             *       {
+             *         "name": "drive-50",
+             *         "stiffness": 1,
+             *         "mass": 1,
+             *         "damping": 1,
+             *         "second_stiffness": 1,
+             *         "quadrature_dps": 0,
+             *         "drive_gain": 0.5
+             *       },
+             *       {
+             *         "name": "sense+1",
+             *         "stiffness": 1,
+             *         "mass": 1,
+             *         "damping": 1,
+             *         "second_stiffness": 1.01,
+             *         "quadrature_dps": 0,
+             *         "drive_gain": 1
+             *       },
+             *       {
+             *         "name": "damping-x2",
+             *         "stiffness": 1,
+             *         "mass": 1,
+             *         "damping": 2,
+             *         "second_stiffness": 1,
+             *         "quadrature_dps": 0,
+             *         "drive_gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["AxesHypothesis"][];
+            /**
+             * @description assumed noise of the force along x, rms per sample over the force that swings x
+             * @default 0.02
+             */
+            drive_noise?: number;
+            /**
+             * @description assumed noise of the force along y, over the same force
+             * @default 0.003
+             */
+            sense_noise?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description uncertainty of the rate at the start, 0 to take it for 0, deg/s
+             * @default 300
+             */
+            rate_std_dps?: number;
+            /**
+             * @description assumed random walk of the rate, deg/s/rt·s
+             * @default 100
+             */
+            rate_walk_dps_rt_s?: number;
+            /**
+             * @description smallest probability
+             * @default 0.000001
+             */
+            probability_floor?: number;
+            /**
+             * @description evidence per sample by which a rival must exceed the winner to gain on it, nat
+             * @default 0.02
+             */
+            least_evidence_nat?: number;
+            /**
+             * @description swing of x (rms over a period) below which residuals are no evidence, µm
+             * @default 0.01
+             */
+            least_swing_um?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * AxesHypothesis
+         * @description One model of a bank of two axes, as factors on the nominal device and a quadrature added to its own.
+         */
+        AxesHypothesis: {
+            /** @description a short name, without spaces or dots */
+            name: string;
+            /**
+             * @description stiffness of both axes over nominal
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * @description mass over nominal
+             * @default 1
+             */
+            mass?: number;
+            /**
+             * @description damping over nominal
+             * @default 1
+             */
+            damping?: number;
+            /**
+             * @description stiffness along y over nominal, in addition to the change of both
+             * @default 1
+             */
+            second_stiffness?: number;
+            /**
+             * @description added stiffness between the axes, read as a rate, deg/s
+             * @default 0
+             */
+            quadrature_dps?: number;
+            /**
+             * @description force along x over the one applied
+             * @default 1
+             */
+            drive_gain?: number;
+        };
+        /**
+         * AxisDrive
+         * @description The output stage, the same for every axis.
+         */
+        AxisDrive: {
+            /**
+             * @description limit to either side, µN
+             * @default 1000
+             */
+            limit_un?: number;
+            /**
+             * @description step of the converter, 0 for none, µN
+             * @default 0
+             */
+            quantum_un?: number;
+            /**
+             * @description held by a converter, or analogue, for controllers that know their force between samples
+             * @default held
+             * @enum {string}
+             */
+            kind?: "held" | "analogue";
+        };
+        /**
+         * AxisGuard
+         * @description When to stop, the same for every axis.
+         */
+        AxisGuard: {
+            /**
+             * @description largest displacement, µm
+             * @default 25
+             */
+            travel_um?: number;
+            /**
+             * @description longest time at the limit of the drive, less a quarter of that below it, ms
+             * @default 50
+             */
+            rail_ms?: number;
+        };
+        /**
+         * BeamWidthStudy
+         * @description Beam width
+         */
+        BeamWidthStudy: {
+            /**
+             * @description Beam width (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "beam_width";
+            /**
+             * @description widths of the beams, µm
+             * @default [
+             *       5,
+             *       1
+             *     ]
+             */
+            widths_um?: number[];
+            /**
+             * @description total loss of the width, µm
+             * @default 0.2
+             */
+            reduction_um?: number;
+        };
+        /**
+         * Campaign
+         * @description The file of a campaign.
+         */
+        Campaign: {
+            /**
+             * @description version of the notation
+             * @default 1
+             * @enum {integer}
+             */
+            schema?: 1;
+            /**
+             * @description short name
+             * @default sweep
+             */
+            id?: string;
+            /**
+             * @description title for people
+             * @default
+             */
+            title?: string;
+            /** @description id of the library, or a scenario */
+            scenario: components["schemas"]["ScenarioId"] | components["schemas"]["Scenario"];
+            /**
+             * @description values of the scenario at all points, by dotted path
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
+            /** @description noise seeds of each point, "A:B" with both ends */
+            seeds?: string | components["schemas"]["Seeds"];
+            /**
+             * @description alternatives, such as controllers
+             * @default []
+             */
+            variants?: components["schemas"]["SweepVariant"][];
+            /**
+             * @description lists of values, by dotted paths of the scenario
+             * @default {}
+             */
+            grid?: {
+                [key: string]: unknown[];
+            };
+            /** @description points spread evenly over ranges of values */
+            latin_hypercube?: components["schemas"]["LatinHypercube"] | null;
+            /** @description devices that a process draws */
+            process_spread?: components["schemas"]["ProcessDeviations"] | null;
+        };
+        /**
+         * CapacitiveSensor
+         * @description Capacitive sensor: Difference of two comb capacitances (2.2.1.1-2), `C_{sp,sn}=C_{s0}\pm\frac{\partial C_s}{\partial x}x`.
+         */
+        CapacitiveSensor: {
+            /**
+             * @description Capacitive sensor: Difference of two comb capacitances (2.2.1.1-2), `C_{sp,sn}=C_{s0}\pm\frac{\partial C_s}{\partial x}x`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "capacitive";
+            /**
+             * @description run even while the sensor in use does not need it; it puts out 0 while it rests
+             * @default false
+             */
+            always?: boolean;
+            /** @description undeflected overlap of the fingers; the device's own unless given, µm */
+            overlap_um?: number | null;
+            /** @description gap between the fingers, the capacitance is proportional to one over it; the device's own unless given, µm */
+            gap_um?: number | null;
+            /** @description where the overlap begins, from the centre; as drawn unless given, µm */
+            comb_start_um?: number | null;
+            /**
+             * @description noise density of the difference (assumed), aF/√Hz
+             * @default 0.1
+             */
+            noise_af_rthz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ChirpReference
+         * @description Chirp: Repeated linear sweep from `f_1` to `f_2` in `T`.
+         */
+        ChirpReference: {
+            /**
+             * @description Chirp: Repeated linear sweep from `f_1` to `f_2` in `T`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "chirp";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description frequency at the start, Hz
+             * @default 500
+             */
+            start_hz?: number;
+            /**
+             * @description frequency at the end, Hz
+             * @default 5000
+             */
+            stop_hz?: number;
+            /**
+             * @description length of a sweep, ms
+             * @default 50
+             */
+            duration_ms?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Comparator
+         * @description The best PID of a small family, chosen once for a scenario, on its device without faults.
+         */
+        Comparator: {
+            /** @description pole of the PID over w0, one of (0.8, 1.0, 1.3, 1.6, 2.0, 2.5) */
+            pole: number;
+            /** @description share of the reference that is fed forward, one of (0.0, 1.0) */
+            feedforward: number;
+        };
+        /**
+         * ConsistencyDiagnoser
+         * @description Consistency test: Finds the hypotheses consistent with input and measurement: (U, Y) in the behaviour of k or not.
+         */
+        ConsistencyDiagnoser: {
+            /**
+             * @description Consistency test: Finds the hypotheses consistent with input and measurement: (U, Y) in the behaviour of k or not. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "consistency";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample: what there is, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description samples of the window
+             * @default 50
+             */
+            window?: number;
+            /**
+             * @description chance that a test calls a true hypothesis false
+             * @default 0.00001
+             */
+            significance?: number;
+            /** @description tone; the reference's unless given, Hz */
+            tone_hz?: number | null;
+            /**
+             * @description samples with the same one left
+             * @default 50
+             */
+            isolated_after?: number;
+            /**
+             * @description samples with none left
+             * @default 200
+             */
+            unknown_after?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ConstantRate
+         * @description Constant rate: Constant rate, `\Omega(t)=\Omega_0`.
+         */
+        ConstantRate: {
+            /**
+             * @description Constant rate: Constant rate, `\Omega(t)=\Omega_0`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "constant";
+            /**
+             * @description angle random walk N, deg/√h
+             * @default 0
+             */
+            angle_random_walk_deg_rt_h?: number;
+            /**
+             * @description bias instability B, deg/h
+             * @default 0
+             */
+            bias_instability_deg_h?: number;
+            /**
+             * @description rate random walk K, deg/h/√h
+             * @default 0
+             */
+            rate_random_walk_deg_h_rt_h?: number;
+            /**
+             * @description angular rate, deg/s
+             * @default 0
+             */
+            deg_per_s?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ConstantReference
+         * @description Constant: Constant, `r(t)=r_0+A`.
+         */
+        ConstantReference: {
+            /**
+             * @description Constant: Constant, `r(t)=r_0+A`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "constant";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /** Controller */
+        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
+        /**
+         * CusumDiagnoser
+         * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis.
+         */
+        CusumDiagnoser: {
+            /**
+             * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "cusum";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description sum at which there is an alarm, nat
+             * @default 10
+             */
+            threshold?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * DetectorsStudy
+         * @description Detectors compared
+         */
+        DetectorsStudy: {
+            /**
+             * @description Detectors compared (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "detectors";
+            /**
+             * @description statistics: signals that grow when something is wrong
+             * @default []
+             */
+            signals?: string[];
+            /**
+             * @description false alarms allowed, episodes per sample
+             * @default 0.00001
+             */
+            false_alarms_per_sample?: number;
+            /**
+             * @description samples of the healthy device
+             * @default 500000
+             */
+            healthy_samples?: number;
+            /**
+             * @description runs with the fault
+             * @default 40
+             */
+            runs?: number;
+            /**
+             * @description sample at which the events of the bench begin
+             * @default 1000
+             */
+            fault_at?: number;
+            /**
+             * @description samples after which a fault counts as missed
+             * @default 3000
+             */
+            within?: number;
+            /**
+             * @description samples of a decision of the characteristic
+             * @default 200
+             */
+            window?: number;
+        };
+        /**
+         * Device
+         * @description A lateral comb resonator, from measured values or from its drawing.
+         */
+        Device: {
+            /** @description name in the catalogue */
+            id?: string;
+            /**
+             * @description what people read
+             * @default
+             */
+            title?: string;
+            /**
+             * @description where the numbers come from
+             * @default
+             */
+            source?: string;
+            /** @description effective mass, kg */
+            mass_kg?: number | null;
+            /** @description damping, N·s/m */
+            damping_ns_m?: number | null;
+            /** @description stiffness of the whole suspension, 2 k_s, N/m */
+            stiffness_n_m?: number | null;
+            /** @description drawing */
+            geometry?: components["schemas"]["Geometry"] | null;
+            /**
+             * @description bias of the first stator, V
+             * @default 20
+             */
+            bias_v?: number;
+            /** @description bias of the second stator; the negative of the first unless given, V */
+            opposite_bias_v?: number | null;
+            /** @description force per volt at the bias, magnitude; wins over the comb, N/V */
+            force_n_per_v?: number | null;
+            /** @description rotor fingers per side */
+            fingers?: number | null;
+            /** @description structural thickness, µm */
+            thickness_um?: number | null;
+            /** @description gap between fingers as etched, µm */
+            finger_gap_um?: number | null;
+            /** @description of a plant that is no resonator */
+            transfer_function?: components["schemas"]["TransferFunction"] | null;
+            /** @description of a device with two axes */
+            gyroscope?: components["schemas"]["GyroscopeTable"] | null;
+            /** @description data of a device with two axes in addition to the drawing */
+            drawn_gyroscope?: components["schemas"]["DrawnGyroscope"] | null;
+            /** @description printed figures of the dissertation */
+            printed?: components["schemas"]["PrintedFigures"] | null;
+        };
+        /** Diagnoser */
+        Diagnoser: components["schemas"]["AnchoredDiagnoser"] | components["schemas"]["ArxBankDiagnoser"] | components["schemas"]["AxesBankDiagnoser"] | components["schemas"]["ConsistencyDiagnoser"] | components["schemas"]["CusumDiagnoser"] | components["schemas"]["FreeBanksDiagnoser"] | components["schemas"]["ImmDiagnoser"] | components["schemas"]["LockInDiagnoser"] | components["schemas"]["LockInGlrDiagnoser"] | components["schemas"]["MmaeDiagnoser"] | components["schemas"]["MovingBankDiagnoser"] | components["schemas"]["ReferenceBanksDiagnoser"] | components["schemas"]["RegionsDiagnoser"] | components["schemas"]["ReseedDiagnoser"] | components["schemas"]["SelfTuningDiagnoser"] | components["schemas"]["TwoOutputDiagnoser"];
+        /**
+         * DrawnGyroscope
+         * @description Data of a gyroscope in addition to the drawing of a comb resonator, which gives all the rest.
+         */
+        DrawnGyroscope: {
+            /**
+             * @description length of the beams that bend along y, µm
+             * @default 340
+             */
+            sense_beam_length_um?: number;
+            /**
+             * @description width of the beams that bend along y, as drawn, µm
+             * @default 2
+             */
+            sense_beam_width_um?: number;
+            /**
+             * @description rotor fingers per side along y
+             * @default 87
+             */
+            sense_fingers?: number;
+            /**
+             * @description pressure in the package; assumed, Pa
+             * @default 100
+             */
+            package_pa?: number;
+            /**
+             * @description angle of the axes of stiffness; of making, not of drawing, deg
+             * @default 0
+             */
+            alpha_deg?: number;
+            /**
+             * @description angle of the axes of damping; of making, not of drawing, deg
+             * @default 0
+             */
+            gamma_deg?: number;
+            /**
+             * @description amplitude x is meant to swing with, µm
+             * @default 5
+             */
+            drive_amplitude_um?: number;
+        };
+        /**
+         * Drive
+         * @description The output stage.
+         */
+        Drive: {
+            /**
+             * @description limit to either side, V
+             * @default 30
+             */
+            limit_v?: number;
+            /**
+             * @description step of the converter, 0 for none, V
+             * @default 0
+             */
+            quantum_v?: number;
+            /**
+             * @description random signs added to the controller's voltage, so that a constant drive carries information, V
+             * @default 0
+             */
+            dither_v?: number;
+            /**
+             * @description signs per second, Hz
+             * @default 10000
+             */
+            dither_rate_hz?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            kind?: "held" | "analogue";
+        };
+        /**
+         * Environment
+         * @description State of the air and of the device in it.
+         */
+        Environment: {
+            /**
+             * @description temperature of device and air, K
+             * @default 300
+             */
+            temperature_k?: number;
+            /**
+             * @description pressure of the air; a device in a sealed package does not feel it, Pa
+             * @default 101325
+             */
+            pressure_pa?: number;
+            /**
+             * @description relative humidity, %
+             * @default 40
+             */
+            humidity_pct?: number;
+            /**
+             * @description Coulomb friction at 40 % of humidity: the shuttle sticks within F/k, nN
+             * @default 0
+             */
+            friction_nn?: number;
+            /**
+             * @description age of the device, week
+             * @default 0
+             */
+            age_weeks?: number;
+        };
+        /**
+         * EstimatesStudy
+         * @description Estimated coefficients
+         */
+        EstimatesStudy: {
+            /**
+             * @description Estimated coefficients (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "estimates";
+            /**
+             * @description samples of the run
+             * @default 6000
+             */
+            samples?: number;
+        };
+        /**
+         * ExcitationIdentifier
+         * @description Excitation monitor: Measures whether this input separates mass, stiffness and damping (A.9).
+         */
+        ExcitationIdentifier: {
+            /**
+             * @description Excitation monitor: Measures whether this input separates mass, stiffness and damping (A.9). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "excitation";
+            /**
+             * @description window of the excitation, ms
+             * @default 20
+             */
+            excitation_window_ms?: number;
+            /**
+             * @description least relative excitation that counts as identifiable
+             * @default 0.00001
+             */
+            least_excitation?: number;
+            /**
+             * @description double pole of the filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /**
+             * @description displacement between samples: on a straight line, or held, which biases by half a sample
+             * @default line
+             * @enum {string}
+             */
+            between?: "line" | "held";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Expectation
+         * @description The expected and the published value of a metric.
+         */
+        Expectation: {
+            /** @description name of the figure, such as control.rms_error_um */
+            metric: string;
+            /** @description smallest expected value, in the unit of the metric */
+            min?: number | null;
+            /** @description largest expected value, in the unit of the metric */
+            max?: number | null;
+            /** @description expected value, in the unit of the metric; goes with tolerance */
+            value?: number | null;
+            /** @description largest distance from value */
+            tolerance?: number | null;
+            /**
+             * @description words of the text
+             * @default
+             */
+            published?: string;
+            /** @description number of the text, in the unit of the metric */
+            published_value?: number | null;
+            /** @description values that agree with the text, ends included */
+            published_range?: [
+                number | ("inf" | "-inf"),
+                number | ("inf" | "-inf")
+            ] | null;
+            /**
+             * @description fields of the scenario that were chosen so that it agrees
+             * @default []
+             */
+            fitted?: string[];
+            /** @description the case that must miss it, for it to praise a controller */
+            compare?: ("open_loop" | "pid" | "none") | null;
+            /**
+             * @description whether a PID does as well
+             * @default false
+             */
+            pid_too?: boolean;
+            /**
+             * @description why nothing is compared, with compare = "none"
+             * @default
+             */
+            reason?: string;
+            /** @description not read: it follows from the published figures */
+            verdict?: string | null;
+            /**
+             * @description origin of the figures
+             * @default
+             */
+            note?: string;
+        };
+        /**
+         * FlopsStudy
+         * @description Operations
+         */
+        FlopsStudy: {
+            /**
+             * @description Operations (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "flops";
+            /**
+             * @description operations of the board per second, in millions
+             * @default 50
+             */
+            board_mflops?: number;
+            /**
+             * @description operations an exponential or a logarithm is worth
+             * @default 20
+             */
+            function_flops?: number;
+            /**
+             * @description samples run before counting
+             * @default 600
+             */
+            warm?: number;
+        };
+        /**
+         * ForceToRebalanceController
+         * @description Force to rebalance: Holds y at zero with a force in step with the velocity of x, the rate, and one with x, the quadrature.
+         */
+        ForceToRebalanceController: {
+            /**
+             * @description Force to rebalance: Holds y at zero with a force in step with the velocity of x, the rate, and one with x, the quadrature. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "force_to_rebalance";
+            /** @description integral gain g; 0.436 of the limit by the damping of y unless given, 1/ms³ */
+            integral_gain_per_ms3?: number | null;
+            /**
+             * @description advance the force by half a sample, by which a held one is late
+             * @default true
+             */
+            advance?: boolean;
+            /**
+             * @description error of the phase of the force, deg
+             * @default 0
+             */
+            phase_error_deg?: number;
+            /**
+             * @description bandwidth of the low-pass behind the rate, Hz
+             * @default 50
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * FreeBanksDiagnoser
+         * @description Free self-tuning banks: Each bank starts at its hypothesis and then learns from the device: all of them become the device.
+         */
+        FreeBanksDiagnoser: {
+            /**
+             * @description Free self-tuning banks: Each bank starts at its hypothesis and then learns from the device: all of them become the device. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "free_banks";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on the assumed variance
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description banks that learn
+             * @default all
+             * @enum {string}
+             */
+            adapting?: "all" | "winner";
+            /**
+             * @description forgetting factor
+             * @default 0.86
+             */
+            forgetting?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description covariance at the start, over unit matrix
+             * @default 100000000
+             */
+            initial_covariance?: number;
+            /**
+             * @description trace beyond which the covariance stays as it is
+             * @default 10000000000
+             */
+            trace_limit?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * FreeDecayStudy
+         * @description Free decay
+         */
+        FreeDecayStudy: {
+            /**
+             * @description Free decay (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "free_decay";
+            /**
+             * @description time looked at, ms
+             * @default 5
+             */
+            duration_ms?: number;
+        };
+        /**
+         * FrequencyResponseStudy
+         * @description Frequency response
+         */
+        FrequencyResponseStudy: {
+            /**
+             * @description Frequency response (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "frequency_response";
+            /**
+             * @description change of one parameter at a time, %
+             * @default 5
+             */
+            change_pct?: number;
+            /**
+             * @description catalogue id of the lower limit; none: the device itself
+             * @default
+             */
+            lower?: string;
+            /**
+             * @description catalogue id of the upper limit; none: the device itself
+             * @default
+             */
+            upper?: string;
+        };
+        /**
+         * GainAdaptationController
+         * @description Gain adaptation (appendix B): One gain in front of a plant of unknown gain, `u=k_cr`, by the rules of appendix B.
+         */
+        GainAdaptationController: {
+            /**
+             * @description Gain adaptation (appendix B): One gain in front of a plant of unknown gain, `u=k_cr`, by the rules of appendix B. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "gain_adaptation";
+            /**
+             * @description which rule
+             * @default lyapunov
+             * @enum {string}
+             */
+            rule?: "mit" | "lyapunov" | "dressler" | "price" | "monopoli";
+            /**
+             * @description corrected; as derived (Lyapunov: on the slope of the error alone); or as printed (MIT: without its dot, Lyapunov: on the error alone)
+             * @default corrected
+             * @enum {string}
+             */
+            form?: "corrected" | "derived" | "printed";
+            /**
+             * @description adaptation gain B
+             * @default 0.4
+             */
+            adaptation_gain?: number;
+            /**
+             * @description part c of the error in Lyapunov's rule
+             * @default 0.5
+             */
+            error_weight?: number;
+            /**
+             * @description gamma of Price's and Monopoli's rules
+             * @default 1
+             */
+            proportional?: number;
+            /**
+             * @description time constant q of Monopoli's filter
+             * @default 1.5
+             */
+            filter_time?: number;
+            /**
+             * @description gain at the start
+             * @default 0
+             */
+            initial_gain?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * GainAdaptationStudy
+         * @description Gain adaptation
+         */
+        GainAdaptationStudy: {
+            /**
+             * @description Gain adaptation (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "gain_adaptation";
+            /**
+             * @description time simulated, s
+             * @default 60
+             */
+            duration_s?: number;
+            /**
+             * @description frequencies of the sines, rad/s
+             * @default []
+             */
+            frequencies?: number[];
+            /**
+             * @description coefficient b1 of the plant under a sine, s
+             * @default 0.2
+             */
+            sine_b1?: number;
+            /**
+             * @description largest adaptation gain looked at
+             * @default 10
+             */
+            most?: number;
+        };
+        /**
+         * Geometry
+         * @description A drawing: lengths in um, widths as drawn, with the etch bias per edge as a field of its own.
+         */
+        Geometry: {
+            /**
+             * @description structural thickness, µm
+             * @default 2
+             */
+            thickness_um?: number;
+            /**
+             * @description gas film under the plate, µm
+             * @default 2.0033
+             */
+            film_gap_um?: number;
+            /**
+             * @description length of a flexure beam, µm
+             * @default 350
+             */
+            beam_length_um?: number;
+            /**
+             * @description width of a beam as drawn, µm
+             * @default 2
+             */
+            beam_width_um?: number;
+            /**
+             * @description etch bias per edge of beams and trusses, µm
+             * @default 0.2384
+             */
+            beam_bias_um?: number;
+            /**
+             * @description width of a truss as drawn, µm
+             * @default 4
+             */
+            truss_width_um?: number;
+            /**
+             * @description truss length between adjacent beams, µm
+             * @default 30
+             */
+            truss_segment_um?: number;
+            /**
+             * @description rotor fingers per side
+             * @default 87
+             */
+            fingers?: number;
+            /**
+             * @description finger length, µm
+             * @default 60
+             */
+            finger_length_um?: number;
+            /**
+             * @description finger width as drawn, µm
+             * @default 2
+             */
+            finger_width_um?: number;
+            /**
+             * @description gap between fingers as drawn, µm
+             * @default 2
+             */
+            finger_gap_um?: number;
+            /**
+             * @description etch bias per edge of fingers, µm
+             * @default 0.05
+             */
+            comb_bias_um?: number;
+            /**
+             * @description undeflected finger overlap, µm
+             * @default 40
+             */
+            overlap_um?: number;
+            /**
+             * @description length of the plate, µm
+             * @default 190
+             */
+            plate_length_um?: number;
+            /**
+             * @description width of the plate, µm
+             * @default 75
+             */
+            plate_width_um?: number;
+            /**
+             * @description width of a comb arm, µm
+             * @default 11.132
+             */
+            arm_width_um?: number;
+            /**
+             * @description length of a comb arm, µm
+             * @default 690
+             */
+            arm_length_um?: number;
+            /**
+             * @description anchor notches and grating cut out of the plate, µm²
+             * @default 3665.7
+             */
+            openings_um2?: number;
+            /**
+             * @description Young's modulus, GPa
+             * @default 164
+             */
+            youngs_modulus_gpa?: number;
+            /**
+             * @description density, kg/m³
+             * @default 2330
+             */
+            density_kg_m3?: number;
+        };
+        /**
+         * GradientIdentifier
+         * @description Gradient identifier: Gradient identifier of `\theta=[k_p,a_1,a_2]` (3.2.3.2-7).
+         */
+        GradientIdentifier: {
+            /**
+             * @description Gradient identifier: Gradient identifier of `\theta=[k_p,a_1,a_2]` (3.2.3.2-7). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "gradient";
+            /**
+             * @description window of the excitation, ms
+             * @default 20
+             */
+            excitation_window_ms?: number;
+            /**
+             * @description least relative excitation that counts as identifiable
+             * @default 0.00001
+             */
+            least_excitation?: number;
+            /**
+             * @description estimate; off holds the estimate, and on again trusts it no longer
+             * @default true
+             */
+            enabled?: boolean;
+            /**
+             * @description double pole of the filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /**
+             * @description displacement between samples: on a straight line, or held, which biases by half a sample
+             * @default line
+             * @enum {string}
+             */
+            between?: "line" | "held";
+            /**
+             * @description estimate at the start
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description largest coefficient over nominal (projection), 0 for none
+             * @default 100
+             */
+            range_ratio?: number;
+            /**
+             * @description adaptation gain g
+             * @default 1
+             */
+            adaptation_gain?: number;
+            /** @description weight of a1 and a2 in Gamma; 1/kp^2 unless given, so that y counts in volts, V²/µm² */
+            output_weight?: number | null;
+            /**
+             * @description divide by 1 + phi'G phi; off as printed
+             * @default true
+             */
+            normalise?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Guard
+         * @description When to stop.
+         */
+        Guard: {
+            /**
+             * @description largest displacement, µm
+             * @default 25
+             */
+            travel_um?: number;
+            /**
+             * @description longest time without a break at the limit of the drive, ms
+             * @default 5
+             */
+            rail_ms?: number;
+            /**
+             * @description stop when fingers touch or a comb is shorted; off for experiments
+             * @default true
+             */
+            stop_on_contact?: boolean;
+        };
+        /**
+         * GyroscopePairPlant
+         * @description Pair of gyroscopes: Two gyroscopes on one frame, which turns and shakes both: the gyroscope of the bench, and a partner.
+         */
+        GyroscopePairPlant: {
+            /**
+             * @description Pair of gyroscopes: Two gyroscopes on one frame, which turns and shakes both: the gyroscope of the bench, and a partner. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "gyroscope_pair";
+            /**
+             * @description displacement along x at the start, µm
+             * @default 0
+             */
+            initial_x_um?: number;
+            /**
+             * @description displacement along y at the start, µm
+             * @default 0
+             */
+            initial_y_um?: number;
+            /**
+             * @description velocity along x at the start, µm/ms
+             * @default 0
+             */
+            initial_x_velocity_um_ms?: number;
+            /**
+             * @description velocity along y at the start, µm/ms
+             * @default 0
+             */
+            initial_y_velocity_um_ms?: number;
+            /**
+             * @description thermomechanical force noise of the damping of both axes
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /** @description the second gyroscope: a name in the catalogue, and values that replace its own */
+            partner?: components["schemas"]["Device"];
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * GyroscopePlant
+         * @description Gyroscope: A mass on two axes of a plane that turns: quadrature, cross damping, unequal axes, thermal noise.
+         */
+        GyroscopePlant: {
+            /**
+             * @description Gyroscope: A mass on two axes of a plane that turns: quadrature, cross damping, unequal axes, thermal noise. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "gyroscope";
+            /**
+             * @description displacement along x at the start, µm
+             * @default 0
+             */
+            initial_x_um?: number;
+            /**
+             * @description displacement along y at the start, µm
+             * @default 0
+             */
+            initial_y_um?: number;
+            /**
+             * @description velocity along x at the start, µm/ms
+             * @default 0
+             */
+            initial_x_velocity_um_ms?: number;
+            /**
+             * @description velocity along y at the start, µm/ms
+             * @default 0
+             */
+            initial_y_velocity_um_ms?: number;
+            /**
+             * @description thermomechanical force noise of the damping of both axes
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * GyroscopeTable
+         * @description Parameters of a gyroscope; the angles turn stiffness and damping against the layout (6.1.3).
+         */
+        GyroscopeTable: {
+            /** @description mass that moves along x, the driven axis, kg */
+            mass_x_kg?: number;
+            /** @description mass that moves along y; the mass of x unless given, kg */
+            mass_y_kg?: number | null;
+            /** @description mass the rate acts on; the mass of y unless given, kg */
+            coriolis_mass_kg?: number | null;
+            /** @description stiffness k_x, N/m */
+            stiffness_x_n_m?: number;
+            /** @description stiffness k_y, N/m */
+            stiffness_y_n_m?: number;
+            /**
+             * @description cross stiffness k_xy: quadrature, N/m
+             * @default 0
+             */
+            stiffness_xy_n_m?: number;
+            /**
+             * @description angle of the axes of stiffness, deg
+             * @default 0
+             */
+            alpha_deg?: number;
+            /** @description damping d_x, N·s/m */
+            damping_x_ns_m?: number;
+            /** @description damping d_y, N·s/m */
+            damping_y_ns_m?: number;
+            /**
+             * @description cross damping d_xy, N·s/m
+             * @default 0
+             */
+            damping_xy_ns_m?: number;
+            /**
+             * @description angle of the axes of damping, deg
+             * @default 0
+             */
+            gamma_deg?: number;
+            /**
+             * @description amplitude x is meant to swing with, µm
+             * @default 1
+             */
+            drive_amplitude_um?: number;
+        };
+        /**
+         * IdealSensor
+         * @description Ideal sensor: Displacement plus white noise, rounded by the converter, `z_i=q\,[(x_i+v_i)/q]`.
+         */
+        IdealSensor: {
+            /**
+             * @description Ideal sensor: Displacement plus white noise, rounded by the converter, `z_i=q\,[(x_i+v_i)/q]`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "ideal";
+            /**
+             * @description standard deviation of the white noise, µm
+             * @default 0.01
+             */
+            noise_um?: number;
+            /**
+             * @description step of the converter, 0 for none, µm
+             * @default 0
+             */
+            quantum_um?: number;
+            /**
+             * @description range of the converter to either side, µm
+             * @default 40
+             */
+            range_um?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /** Identifier */
+        Identifier: components["schemas"]["AdaptiveForgettingIdentifier"] | components["schemas"]["ExcitationIdentifier"] | components["schemas"]["GradientIdentifier"] | components["schemas"]["LeastSquaresIdentifier"] | components["schemas"]["RecursiveLeastSquaresIdentifier"];
+        /**
+         * ImmDiagnoser
+         * @description Interacting multiple models (IMM): Kalman filters that exchange their states, because the device may change from one hypothesis to another.
+         */
+        ImmDiagnoser: {
+            /**
+             * @description Interacting multiple models (IMM): Kalman filters that exchange their states, because the device may change from one hypothesis to another. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "imm";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description probability of a change to another hypothesis, per sample
+             * @default 0.0001
+             */
+            switching?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * IndirectMracController
+         * @description Indirect MRAC: Indirect MRAC: parameters by least squares with forgetting (3.3.2.8-11), gains from them (3.3.2.16).
+         */
+        IndirectMracController: {
+            /**
+             * @description Indirect MRAC: Indirect MRAC: parameters by least squares with forgetting (3.3.2.8-11), gains from them (3.3.2.16). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "indirect_mrac";
+            /**
+             * @description rate B of forgetting, 1/s
+             * @default 30
+             */
+            forgetting_rate?: number;
+            /**
+             * @description weight alpha of the normaliser
+             * @default 10
+             */
+            normaliser?: number;
+            /**
+             * @description covariance at the start
+             * @default 1000
+             */
+            covariance?: number;
+            /**
+             * @description largest trace of the covariance, 0 for 1e10
+             * @default 100000
+             */
+            trace_limit?: number;
+            /**
+             * @description pole of all filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /**
+             * @description least share of the nominal gain the estimate may fall to
+             * @default 0.1
+             */
+            gain_floor?: number;
+            /**
+             * @description gain on the reference: K_m/K_p, or as printed K_p/K_m
+             * @default working
+             * @enum {string}
+             */
+            gain_map?: "working" | "printed";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * JoinedRecordsStudy
+         * @description Joined records
+         */
+        JoinedRecordsStudy: {
+            /**
+             * @description Joined records (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "joined_records";
+            /**
+             * @description samples of the first record
+             * @default 1886
+             */
+            first_samples?: number;
+            /**
+             * @description samples of the second record
+             * @default 2314
+             */
+            second_samples?: number;
+            /**
+             * @description samples before each record
+             * @default 2000
+             */
+            settle_samples?: number;
+        };
+        /**
+         * KalmanGainsStudy
+         * @description Kalman gains
+         */
+        KalmanGainsStudy: {
+            /**
+             * @description Kalman gains (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "kalman_gains";
+            /**
+             * @description samples until the gains rest
+             * @default 2000
+             */
+            samples?: number;
+        };
+        /**
+         * LatinHypercube
+         * @description Points spread evenly in every value at once (McKay, Beckman, Conover 1979).
+         */
+        LatinHypercube: {
+            /** @description number of points */
+            points: number;
+            /**
+             * @description seed of the points
+             * @default 1
+             */
+            seed?: number;
+            /** @description ranges of values, by dotted paths of the scenario */
+            ranges: {
+                [key: string]: components["schemas"]["Range"];
+            };
+        };
+        /**
+         * LeastSquaresIdentifier
+         * @description Least squares, continuous forgetting: Least squares with continuous forgetting, sampled exactly (3.3.2.8-11).
+         */
+        LeastSquaresIdentifier: {
+            /**
+             * @description Least squares, continuous forgetting: Least squares with continuous forgetting, sampled exactly (3.3.2.8-11). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "least_squares";
+            /**
+             * @description window of the excitation, ms
+             * @default 20
+             */
+            excitation_window_ms?: number;
+            /**
+             * @description least relative excitation that counts as identifiable
+             * @default 0.00001
+             */
+            least_excitation?: number;
+            /**
+             * @description estimate; off holds the estimate, and on again trusts it no longer
+             * @default true
+             */
+            enabled?: boolean;
+            /**
+             * @description double pole of the filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /**
+             * @description displacement between samples: on a straight line, or held, which biases by half a sample
+             * @default line
+             * @enum {string}
+             */
+            between?: "line" | "held";
+            /**
+             * @description estimate at the start
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description largest coefficient over nominal (projection), 0 for none
+             * @default 100
+             */
+            range_ratio?: number;
+            /**
+             * @description rate B of forgetting, 1/s
+             * @default 30
+             */
+            forgetting_rate?: number;
+            /**
+             * @description alpha of the normaliser
+             * @default 10
+             */
+            normaliser?: number;
+            /**
+             * @description P0, as a multiple of I
+             * @default 1000
+             */
+            initial_covariance?: number;
+            /**
+             * @description largest trace of the covariance, 0 for 1e10
+             * @default 100000
+             */
+            covariance_limit?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * LinearPlant
+         * @description Linear plant: Mass, damper and spring, `m\ddot x+\beta\dot x+kx=F_e` (1.3.1, with `k=2k_s`).
+         */
+        LinearPlant: {
+            /**
+             * @description Linear plant: Mass, damper and spring, `m\ddot x+\beta\dot x+kx=F_e` (1.3.1, with `k=2k_s`). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "linear";
+            /**
+             * @description displacement at the start, µm
+             * @default 0
+             */
+            initial_displacement_um?: number;
+            /**
+             * @description velocity at the start, µm/ms
+             * @default 0
+             */
+            initial_velocity_um_ms?: number;
+            /**
+             * @description white noise on the drive voltage, rms per sample, V
+             * @default 0
+             */
+            drive_noise_v?: number;
+            /**
+             * @description thermomechanical force noise of the damping
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /** @description gap between fingers as etched, instead of the device's; force, capacitance and pull-in go with it, µm */
+            gap_um?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * LockInDiagnoser
+         * @description Residual-correlation bank (lock-in): Residual correlation: only the part of a residual at the frequency of the drive is evidence.
+         */
+        LockInDiagnoser: {
+            /**
+             * @description Residual-correlation bank (lock-in): Residual correlation: only the part of a residual at the frequency of the drive is evidence. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "lock_in";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.3
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /** @description samples of the window; a period of the tone unless given */
+            window?: number | null;
+            /** @description tone; the reference's unless given, Hz */
+            tone_hz?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * LockInGlrDiagnoser
+         * @description Lock-in detector (GLR): Alarm when the residual of the healthy device has a part at the tone that noise does not explain.
+         */
+        LockInGlrDiagnoser: {
+            /**
+             * @description Lock-in detector (GLR): Alarm when the residual of the healthy device has a part at the tone that noise does not explain. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "lock_in_glr";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description samples of the window
+             * @default 100
+             */
+            window?: number;
+            /** @description tone; the reference's unless given, Hz */
+            tone_hz?: number | null;
+            /**
+             * @description T at which there is an alarm
+             * @default 23
+             */
+            threshold?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * LqgController
+         * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8).
+         */
+        LqgController: {
+            /**
+             * @description LQG: Linear-quadratic-Gaussian tracking of the reference model (Kalman 1960; Åström 1970, chapter 8). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "lqg";
+            /**
+             * @description root of the cost of a volt, µm/V
+             * @default 0.03
+             */
+            voltage_cost_um_v?: number;
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 1
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * MimoAdaptiveController
+         * @description Many-input adaptive control: The controller of one input carried over to two (6.2): it cancels the estimated plant and puts a model in place.
+         */
+        MimoAdaptiveController: {
+            /**
+             * @description Many-input adaptive control: The controller of one input carried over to two (6.2): it cancels the estimated plant and puts a model in place. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "mimo_adaptive";
+            /**
+             * @description amplitude along x, µm
+             * @default 1
+             */
+            amplitude_x_um?: number;
+            /**
+             * @description amplitude along y, µm
+             * @default 1
+             */
+            amplitude_y_um?: number;
+            /** @description frequency along x; the axis frequency, or 0.2 rad a sample, unless given, Hz */
+            frequency_x_hz?: number | null;
+            /** @description frequency along y; 1.3 of that along x unless given, Hz */
+            frequency_y_hz?: number | null;
+            /**
+             * @description gain gamma of the velocity error, w0
+             * @default 1
+             */
+            velocity_gain?: number;
+            /**
+             * @description gain g_K, w0²/µm²
+             * @default 1
+             */
+            stiffness_gain?: number;
+            /**
+             * @description gain g_D, of the damping, 1/µm²
+             * @default 0.1
+             */
+            cross_gain?: number;
+            /**
+             * @description gain g_O, 1/µm²
+             * @default 0.02
+             */
+            rate_gain?: number;
+            /**
+             * @description bandwidth of the low-pass behind the rate, Hz
+             * @default 30
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * MmaeDiagnoser
+         * @description Kalman bank (MMAE): A Kalman filter for each hypothesis, weighed by how well it predicts (5.2.3).
+         */
+        MmaeDiagnoser: {
+            /**
+             * @description Kalman bank (MMAE): A Kalman filter for each hypothesis, weighed by how well it predicts (5.2.3). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "mmae";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.3
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description covariances propagated, or gains at their limit
+             * @default recursive
+             * @enum {string}
+             */
+            form?: "recursive" | "steady";
+            /**
+             * @description psi with or without R
+             * @default correct
+             * @enum {string}
+             */
+            residual_covariance?: "correct" | "printed";
+            /**
+             * @description smallest probability; 0 as printed
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description what probabilities are kept as; linear as printed
+             * @default logarithmic
+             * @enum {string}
+             */
+            arithmetic?: "logarithmic" | "linear";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Model
+         * @description Which model.
+         */
+        Model: {
+            /**
+             * @description the nominal device, a damped device of the same resonance, just the static displacement, or a transfer function
+             * @default copy
+             * @enum {string}
+             */
+            kind?: "copy" | "damped" | "direct" | "transfer_function";
+            /**
+             * @description coefficients of the numerator, highest power first
+             * @default [
+             *       1
+             *     ]
+             */
+            numerator?: number[];
+            /**
+             * @description coefficients of the denominator, highest power first
+             * @default [
+             *       1,
+             *       1
+             *     ]
+             */
+            denominator?: number[];
+            /**
+             * @description damping ratio of the damped model
+             * @default 0.7
+             */
+            damping_ratio?: number;
+        };
+        /**
+         * MonteCarloStudy
+         * @description Monte Carlo
+         */
+        MonteCarloStudy: {
+            /**
+             * @description Monte Carlo (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "monte_carlo";
+            /**
+             * @description seeds, starting at the seed of the bench
+             * @default 40
+             */
+            runs?: number;
+            /**
+             * @description length of a run
+             * @default 9000
+             */
+            samples?: number;
+            /**
+             * @description two diagnosers whose means are divided
+             * @default []
+             */
+            compare?: string[];
+        };
+        /**
+         * MovingBankDiagnoser
+         * @description Moving bank: Follows a slow drift: a centre and its neighbours on either side, moved when a neighbour is the likelier.
+         */
+        MovingBankDiagnoser: {
+            /**
+             * @description Moving bank: Follows a slow drift: a centre and its neighbours on either side, moved when a neighbour is the likelier. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "moving_bank";
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.3
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description parameter that is followed
+             * @default stiffness
+             * @enum {string}
+             */
+            follows?: "stiffness" | "mass" | "damping" | "gain";
+            /**
+             * @description distance of neighbours, as a share of nominal
+             * @default 0.025
+             */
+            spacing?: number;
+            /**
+             * @description steps to either side
+             * @default 16
+             */
+            reach?: number;
+            /**
+             * @description probability above which a neighbour becomes the centre
+             * @default 0.5
+             */
+            move_above?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * MracController
+         * @description Direct MRAC: Direct model reference adaptive control with augmented error (3.1.2.5-16).
+         */
+        MracController: {
+            /**
+             * @description Direct MRAC: Direct model reference adaptive control with augmented error (3.1.2.5-16). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "mrac";
+            /**
+             * @description adaptation gain g
+             * @default 1
+             */
+            adaptation_gain?: number;
+            /**
+             * @description pole of the state filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /** @description weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts, V²/µm² */
+            output_weight?: number | null;
+            /**
+             * @description leakage of the gains, per 1/w0
+             * @default 0
+             */
+            leakage?: number;
+            /**
+             * @description bound of the gains (projection), 0 for none
+             * @default 0
+             */
+            gain_bound?: number;
+            /**
+             * @description divide by 1 + w'Gw + eta^2
+             * @default true
+             */
+            normalise?: boolean;
+            /**
+             * @description adapt on the augmented error; off adapts on the plain one
+             * @default true
+             */
+            augment?: boolean;
+            /**
+             * @description voltage the auxiliary error is taken from: the one applied, or as printed the one asked for, which is another at the limit and while another controller drives
+             * @default applied
+             * @enum {string}
+             */
+            auxiliary?: "applied" | "printed";
+            /**
+             * @description adapt alpha as well
+             * @default true
+             */
+            adapt_alpha?: boolean;
+            /**
+             * @description constant regressor against a constant load, 0 for none, V
+             * @default 0
+             */
+            bias_v?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * MracVelocityController
+         * @description Direct MRAC with velocity: Direct MRAC of relative degree one (3.1.2.12): no augmented error, but it needs the velocity.
+         */
+        MracVelocityController: {
+            /**
+             * @description Direct MRAC with velocity: Direct MRAC of relative degree one (3.1.2.12): no augmented error, but it needs the velocity. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "mrac_velocity";
+            /**
+             * @description adaptation gain g
+             * @default 0.05
+             */
+            adaptation_gain?: number;
+            /**
+             * @description on displacement and velocity, or as printed on displacement alone; the same for a plant of first order
+             * @default relative_degree_one
+             * @enum {string}
+             */
+            form?: "relative_degree_one" | "printed";
+            /**
+             * @description zero c over the damping a1 of the model; below 1 is positive real
+             * @default 0.9
+             */
+            zero?: number;
+            /** @description filters of input and output; unless given, for plants of second order only */
+            filters?: boolean | null;
+            /**
+             * @description pole of the state filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /** @description weight of w2 and y in Gamma; 1/kp^2 unless given, so that y counts in volts, V²/µm² */
+            output_weight?: number | null;
+            /**
+             * @description gains at the start: matched to the nominal device, or zero
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description leakage of the gains, per 1/w0
+             * @default 0
+             */
+            leakage?: number;
+            /**
+             * @description bound of the gains (projection), 0 for none
+             * @default 30
+             */
+            gain_bound?: number;
+            /**
+             * @description velocity from the plant itself, from the difference of two samples, or from an observer
+             * @default true
+             * @enum {string}
+             */
+            velocity?: "true" | "difference" | "observer";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * MultiSineReference
+         * @description Sum of sines: Sum of tones, `r(t)=r_0+A\sum_i a_i\sin(2\pi f_i t+\varphi_i)`.
+         */
+        MultiSineReference: {
+            /**
+             * @description Sum of sines: Sum of tones, `r(t)=r_0+A\sum_i a_i\sin(2\pi f_i t+\varphi_i)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "multi_sine";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description the tones
+             * @default [
+             *       {
+             *         "frequency_hz": 159.155,
+             *         "amplitude": 1,
+             *         "phase_deg": 0
+             *       },
+             *       {
+             *         "frequency_hz": 461.549,
+             *         "amplitude": 1,
+             *         "phase_deg": 0
+             *       }
+             *     ]
+             */
+            tones?: components["schemas"]["Tone"][];
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * NoiseRate
+         * @description Constant rate with noise: Constant rate with noise of the tactical grade, `\Omega(t)=\Omega_0+\Omega_n`.
+         */
+        NoiseRate: {
+            /**
+             * @description Constant rate with noise: Constant rate with noise of the tactical grade, `\Omega(t)=\Omega_0+\Omega_n`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "noise";
+            /**
+             * @description angle random walk N, deg/√h
+             * @default 0.1
+             */
+            angle_random_walk_deg_rt_h?: number;
+            /**
+             * @description bias instability B, deg/h
+             * @default 3
+             */
+            bias_instability_deg_h?: number;
+            /**
+             * @description rate random walk K, deg/h/√h
+             * @default 10
+             */
+            rate_random_walk_deg_h_rt_h?: number;
+            /**
+             * @description angular rate, deg/s
+             * @default 0
+             */
+            deg_per_s?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * NonlinearPlant
+         * @description Nonlinear plant: Plant with cubic stiffness, dry friction and end stops.
+         */
+        NonlinearPlant: {
+            /**
+             * @description Nonlinear plant: Plant with cubic stiffness, dry friction and end stops. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "nonlinear";
+            /**
+             * @description displacement at the start, µm
+             * @default 0
+             */
+            initial_displacement_um?: number;
+            /**
+             * @description velocity at the start, µm/ms
+             * @default 0
+             */
+            initial_velocity_um_ms?: number;
+            /**
+             * @description white noise on the drive voltage, rms per sample, V
+             * @default 0
+             */
+            drive_noise_v?: number;
+            /**
+             * @description thermomechanical force noise of the damping
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /** @description gap between fingers as etched, instead of the device's; force, capacitance and pull-in go with it, µm */
+            gap_um?: number | null;
+            /**
+             * @description cubic stiffness k3, N/m³
+             * @default 10000000
+             */
+            cubic_n_m3?: number;
+            /**
+             * @description Coulomb friction, nN
+             * @default 0
+             */
+            friction_nn?: number;
+            /**
+             * @description velocity below which friction is smoothed, µm/ms
+             * @default 0.05
+             */
+            slip_velocity_um_ms?: number;
+            /**
+             * @description travel to the end stops, µm
+             * @default 20
+             */
+            stop_um?: number;
+            /**
+             * @description stiffness of a stop, N/m
+             * @default 50
+             */
+            stop_stiffness_n_m?: number;
+            /**
+             * @description damping of a stop, N·s/m
+             * @default 0.00002
+             */
+            stop_damping_ns_m?: number;
+            /**
+             * @description Runge-Kutta steps in a sample
+             * @default 4
+             */
+            substeps?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * OpenLoopController
+         * @description Open loop: No feedback: the reference is the drive, `u=r`.
+         */
+        OpenLoopController: {
+            /**
+             * @description Open loop: No feedback: the reference is the drive, `u=r`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "open_loop";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * OpenLoopRateController
+         * @description Open-loop read-out: Reads the rate from the swing of y, with no force on it.
+         */
+        OpenLoopRateController: {
+            /**
+             * @description Open-loop read-out: Reads the rate from the swing of y, with no force on it. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "open_loop_rate";
+            /**
+             * @description bandwidth of each of two low-passes, Hz
+             * @default 20
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description error of the phase of the demodulation, deg
+             * @default 0
+             */
+            phase_error_deg?: number;
+            /**
+             * @description turn y back by the phase of the nominal sense axis
+             * @default false
+             */
+            correct_phase?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * OutputsStudy
+         * @description Outputs laid over each other
+         */
+        OutputsStudy: {
+            /**
+             * @description Outputs laid over each other (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "outputs";
+            /**
+             * @description samples run after the last event
+             * @default 1000
+             */
+            stretch_samples?: number;
+            /**
+             * @description periods of the reference kept of each stretch
+             * @default 2
+             */
+            periods?: number;
+        };
+        /**
+         * OwnUnit
+         * @description A unit of your own.
+         */
+        OwnUnit: {
+            /** @description its text, in Python */
+            source: string;
+        };
+        /**
+         * PackageEntry
+         * @description The entry of a package in a scenario.
+         */
+        PackageEntry: {
+            /** @description its version */
+            version: string;
+            /** @description SHA-256 over its Python files */
+            source: string;
+        };
+        /**
+         * PeakValleySensor
+         * @description Peak and valley counter: Counts extremes of the light, half a pitch each, and interpolates between them (2.2.2, 2.2.3).
+         */
+        PeakValleySensor: {
+            /**
+             * @description Peak and valley counter: Counts extremes of the light, half a pitch each, and interpolates between them (2.2.2, 2.2.3). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "peak_valley";
+            /**
+             * @description run even while the sensor in use does not need it; it puts out 0 while it rests
+             * @default false
+             */
+            always?: boolean;
+            /**
+             * @description which optical signal it reads
+             * @default through_wafer
+             * @enum {string}
+             */
+            light?: "through_wafer" | "doppler";
+            /**
+             * @description share of the swing an extreme must be left by
+             * @default 0.1
+             */
+            hysteresis?: number;
+            /**
+             * @description share of the swing that may lack of a full one
+             * @default 0.08
+             */
+            tolerance?: number;
+            /**
+             * @description share by which the levels follow each extreme
+             * @default 0.1
+             */
+            follow?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * PersistencyStudy
+         * @description Persistency of excitation
+         */
+        PersistencyStudy: {
+            /**
+             * @description Persistency of excitation (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "persistency";
+            /**
+             * @description angular frequencies, krad/s
+             * @default [
+             *       1,
+             *       2.9,
+             *       8,
+             *       16
+             *     ]
+             */
+            frequencies_krad_s?: number[];
+            /**
+             * @description amplitude of the whole, shared by the tones, V
+             * @default 10
+             */
+            amplitude_v?: number;
+            /**
+             * @description double pole of the filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+        };
+        /**
+         * PickOffSensor
+         * @description Pick-off of an axis: Displacement and velocity of one axis plus white noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis.
+         */
+        PickOffSensor: {
+            /**
+             * @description Pick-off of an axis: Displacement and velocity of one axis plus white noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "pick_off";
+            /**
+             * @description noise density of the displacement, pm/√Hz
+             * @default 0
+             */
+            noise_pm_rthz?: number;
+            /**
+             * @description noise density of the velocity, nm/s/√Hz
+             * @default 0
+             */
+            velocity_noise_nm_s_rthz?: number;
+            /**
+             * @description step of the converter, 0 for none, pm
+             * @default 0
+             */
+            quantum_pm?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * PidController
+         * @description PID: PID on the tracking error, `u=k_fr+K_pe+K_i\int e\,dt+K_d\dot e_f`, `e=y_d-y`.
+         */
+        PidController: {
+            /**
+             * @description PID: PID on the tracking error, `u=k_fr+K_pe+K_i\int e\,dt+K_d\dot e_f`, `e=y_d-y`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "pid";
+            /**
+             * @description triple pole over the resonance, for gains left empty
+             * @default 1.3
+             */
+            pole?: number;
+            /** @description proportional gain, V/µm */
+            proportional_v_um?: number | null;
+            /** @description integral gain, V/(µm·ms) */
+            integral_v_um_ms?: number | null;
+            /** @description derivative gain, V·ms/µm */
+            derivative_v_ms_um?: number | null;
+            /**
+             * @description time constant of the derivative filter over 1/w0
+             * @default 0.2
+             */
+            derivative_filter?: number;
+            /**
+             * @description share of the reference voltage added
+             * @default 0
+             */
+            feedforward?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * PlanarPlant
+         * @description Planar plant: Rigid shuttle in the plane: along x, sideways and in rotation, with pull-in, contact and short circuit.
+         */
+        PlanarPlant: {
+            /**
+             * @description Planar plant: Rigid shuttle in the plane: along x, sideways and in rotation, with pull-in, contact and short circuit. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "planar";
+            /**
+             * @description displacement at the start, µm
+             * @default 0
+             */
+            initial_displacement_um?: number;
+            /**
+             * @description velocity at the start, µm/ms
+             * @default 0
+             */
+            initial_velocity_um_ms?: number;
+            /**
+             * @description white noise on the drive voltage, rms per sample, V
+             * @default 0
+             */
+            drive_noise_v?: number;
+            /**
+             * @description thermomechanical force noise of the damping
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /** @description gap between fingers as etched, instead of the device's; force, capacitance and pull-in go with it, µm */
+            gap_um?: number | null;
+            /**
+             * @description gap that is left where fingers touch, µm
+             * @default 0.15
+             */
+            contact_clearance_um?: number;
+            /**
+             * @description stiffness of touching fingers, N/m
+             * @default 5000
+             */
+            contact_stiffness_n_m?: number;
+            /**
+             * @description damping of touching fingers, N·s/m
+             * @default 0.000015
+             */
+            contact_damping_ns_m?: number;
+            /**
+             * @description touching fingers short their comb
+             * @default true
+             */
+            short_on_contact?: boolean;
+            /**
+             * @description travel to the end stops, µm
+             * @default 20
+             */
+            stop_um?: number;
+            /**
+             * @description stiffness of a stop, N/m
+             * @default 50
+             */
+            stop_stiffness_n_m?: number;
+            /**
+             * @description damping of a stop, N·s/m
+             * @default 0.00002
+             */
+            stop_damping_ns_m?: number;
+            /** @description distance of the stator's finger tips from the centre; from the drawing unless given, µm */
+            stator_tip_um?: number | null;
+            /** @description undeflected finger overlap; from the drawing unless given, µm */
+            overlap_um?: number | null;
+            /** @description rotary inertia; from the drawing unless given, kg·m² */
+            inertia_kg_m2?: number | null;
+            /** @description stiffness along y without travel; from the drawing unless given, N/m */
+            lateral_stiffness_n_m?: number | null;
+            /** @description travel that halves the stiffness along y; from the drawing unless given, µm */
+            lateral_reach_um?: number | null;
+            /** @description stiffness against rotation without travel; from the drawing unless given, N·m/rad */
+            rotation_stiffness_nm?: number | null;
+            /** @description travel that halves the stiffness against rotation; from the drawing unless given, µm */
+            rotation_reach_um?: number | null;
+            /**
+             * @description cubic stiffness along x, N/m³
+             * @default 0
+             */
+            cubic_n_m3?: number;
+            /**
+             * @description sideways shift per squared travel, 1/m
+             * @default 0
+             */
+            sideways_per_m?: number;
+            /**
+             * @description rotation per travel, rad/m
+             * @default 0
+             */
+            turn_rad_m?: number;
+            /**
+             * @description rotation per cubed travel, rad/m³
+             * @default 0
+             */
+            turn_cubic_rad_m3?: number;
+            /**
+             * @description sideways offset of the combs as made, µm
+             * @default 0
+             */
+            misalignment_um?: number;
+            /**
+             * @description rotation of the combs as made, mrad
+             * @default 0
+             */
+            misalignment_mrad?: number;
+            /** @description damping along y without the fingers; from the drawing unless given, N·s/m */
+            lateral_damping_ns_m?: number | null;
+            /** @description damping of the rotation without the fingers; from the drawing unless given, N·m·s */
+            rotation_damping_nms?: number | null;
+            /** @description squeeze film of all fingers at the centre, of a continuous gas; from the drawing unless given, N·s/m */
+            squeeze_ns_m?: number | null;
+            /**
+             * @description longest substep, µs
+             * @default 0.25
+             */
+            step_us?: number;
+            /**
+             * @description longest substep beyond 0.4 of the gap, µs
+             * @default 0.1
+             */
+            near_step_us?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /** Plant */
+        Plant: components["schemas"]["GyroscopePlant"] | components["schemas"]["GyroscopePairPlant"] | components["schemas"]["LinearPlant"] | components["schemas"]["NonlinearPlant"] | components["schemas"]["PlanarPlant"] | components["schemas"]["SlavedLateralPlant"] | components["schemas"]["TransferFunctionPlant"];
+        /**
+         * PositiveRealCase
+         * @description A transfer function, highest power first.
+         */
+        PositiveRealCase: {
+            /** @description name in the figures */
+            name: string;
+            /** @description highest power first */
+            numerator: number[];
+            /** @description highest power first */
+            denominator: number[];
+        };
+        /**
+         * PositiveRealStudy
+         * @description Positive real
+         */
+        PositiveRealStudy: {
+            /**
+             * @description Positive real (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "positive_real";
+            /**
+             * @description transfer functions to judge
+             * @default []
+             */
+            cases?: components["schemas"]["PositiveRealCase"][];
+            /**
+             * @description judge inverse, sum and feedback of the first two too
+             * @default false
+             */
+            combine?: boolean;
+        };
+        /**
+         * PrbsReference
+         * @description Pseudo-random binary sequence: Random signs held for one chip each, `r(t)=r_0\pm A`; the same seed gives the same sequence.
+         */
+        PrbsReference: {
+            /**
+             * @description Pseudo-random binary sequence: Random signs held for one chip each, `r(t)=r_0\pm A`; the same seed gives the same sequence. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "prbs";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description chips per second, Hz
+             * @default 10000
+             */
+            chip_rate_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Printed
+         * @description A number of the text about a figure, drawn over a signal in time.
+         */
+        Printed: {
+            /**
+             * @description number of the figure; empty for a sentence without one
+             * @default
+             */
+            figure?: string;
+            /** @description number of the section */
+            section: string;
+            /** @description as printed */
+            words: string;
+            /** @description the part of the words that is the number */
+            number: string;
+            /** @description the signal it is drawn over */
+            signal: string;
+            /** @description of the numbers here, the unit of the signal */
+            unit: string;
+            /** @description lower end of a band, in the unit */
+            low?: number | null;
+            /** @description upper end of a band, in the unit */
+            high?: number | null;
+            /**
+             * @description lines, in the unit
+             * @default []
+             */
+            values?: number[];
+            /** @description sample of a moment */
+            at_sample?: number | null;
+            /** @description device time of a moment, ms */
+            at_ms?: number | null;
+            /** @description position of the event that times count from */
+            event?: number | null;
+            /**
+             * @description where a band or a value begins, ms
+             * @default 0
+             */
+            after_ms?: number;
+            /** @description where it ends; at the end of the run, ms */
+            until_ms?: number | null;
+            /**
+             * @description the expectation that judges it
+             * @default
+             */
+            metric?: string;
+            /**
+             * @description where a number comes from that is not in the words
+             * @default
+             */
+            reading?: string;
+        };
+        /**
+         * PrintedFigures
+         * @description Figures that the dissertation prints and that differ from the figures of the device's parameters.
+         */
+        PrintedFigures: {
+            /** @description mass, kg */
+            mass_kg?: number | null;
+            /** @description spring constant of one side, N/m */
+            one_side_stiffness_n_m?: number | null;
+            /** @description resonant frequency, Hz */
+            f0_hz?: number | null;
+        };
+        /**
+         * PrintedTableStudy
+         * @description Printed devices
+         */
+        PrintedTableStudy: {
+            /**
+             * @description Printed devices (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "printed_table";
+            /**
+             * @description the devices whose id begins so
+             * @default table-1-1-
+             */
+            prefix?: string;
+        };
+        /**
+         * ProcessDeviations
+         * @description Standard deviations of a process that makes devices of the scenario's drawing.
+         */
+        ProcessDeviations: {
+            /** @description number of devices */
+            devices: number;
+            /**
+             * @description seed of the devices
+             * @default 1
+             */
+            seed?: number;
+            /**
+             * @description of the etch bias of beams, µm
+             * @default 0.05
+             */
+            beam_bias_um?: number;
+            /**
+             * @description of the etch bias of fingers, µm
+             * @default 0.03
+             */
+            comb_bias_um?: number;
+            /**
+             * @description of the structural thickness, µm
+             * @default 0.05
+             */
+            thickness_um?: number;
+            /**
+             * @description of the gas film under the plate, µm
+             * @default 0.08
+             */
+            film_gap_um?: number;
+            /**
+             * @description of Young's modulus, GPa
+             * @default 5
+             */
+            youngs_modulus_gpa?: number;
+        };
+        /**
+         * ProcessSpreadStudy
+         * @description Process spread
+         */
+        ProcessSpreadStudy: {
+            /**
+             * @description Process spread (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "process_spread";
+            /**
+             * @description devices drawn
+             * @default 20000
+             */
+            draws?: number;
+            /**
+             * @description largest deviation, in standard deviations
+             * @default 3
+             */
+            cut?: number;
+            /**
+             * @description standard deviation of the etch bias of beams, per edge, µm
+             * @default 0.05
+             */
+            beam_bias_um?: number;
+            /**
+             * @description standard deviation of the etch bias of fingers, per edge, µm
+             * @default 0.03
+             */
+            comb_bias_um?: number;
+            /**
+             * @description standard deviation of the thickness, µm
+             * @default 0.05
+             */
+            thickness_um?: number;
+            /**
+             * @description standard deviation of the gas film, µm
+             * @default 0.08
+             */
+            film_gap_um?: number;
+            /**
+             * @description standard deviation of Young's modulus, GPa
+             * @default 5
+             */
+            youngs_modulus_gpa?: number;
+        };
+        /**
+         * ProfileRate
+         * @description Rate by breakpoints: Rate by breakpoints, `\Omega(t)=\Omega_i+(\Omega_{i+1}-\Omega_i)\frac{t-t_i}{t_{i+1}-t_i}`.
+         */
+        ProfileRate: {
+            /**
+             * @description Rate by breakpoints: Rate by breakpoints, `\Omega(t)=\Omega_i+(\Omega_{i+1}-\Omega_i)\frac{t-t_i}{t_{i+1}-t_i}`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "profile";
+            /**
+             * @description angle random walk N, deg/√h
+             * @default 0
+             */
+            angle_random_walk_deg_rt_h?: number;
+            /**
+             * @description bias instability B, deg/h
+             * @default 0
+             */
+            bias_instability_deg_h?: number;
+            /**
+             * @description rate random walk K, deg/h/√h
+             * @default 0
+             */
+            rate_random_walk_deg_h_rt_h?: number;
+            /**
+             * @description the breakpoints, by rising moment
+             * @default [
+             *       {
+             *         "at_ms": 0,
+             *         "deg_per_s": 0
+             *       },
+             *       {
+             *         "at_ms": 100,
+             *         "deg_per_s": 100
+             *       }
+             *     ]
+             */
+            points?: components["schemas"]["RateBreakpoint"][];
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * QuadratureKalmanSensor
+         * @description Quadrature with Kalman filter: The phase of two beams through a Kalman filter on `(x,\dot x,f)`, unwrapped about its prediction (6.3).
+         */
+        QuadratureKalmanSensor: {
+            /**
+             * @description Quadrature with Kalman filter: The phase of two beams through a Kalman filter on `(x,\dot x,f)`, unwrapped about its prediction (6.3). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "quadrature_kalman";
+            /**
+             * @description run even while the sensor in use does not need it; it puts out 0 while it rests
+             * @default false
+             */
+            always?: boolean;
+            /**
+             * @description amplitude of the motion it is tuned for, µm
+             * @default 4
+             */
+            stroke_um?: number;
+            /**
+             * @description stiffness it assumes over the nominal one
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * @description force the model may lack, over the spring force at that amplitude
+             * @default 0.1
+             */
+            model_error?: number;
+            /**
+             * @description how fast that force may wander, 1/ms
+             * @default 4
+             */
+            force_rate_per_ms?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * QuadratureSensor
+         * @description Quadrature with unwrap: Displacement from the phase of two beams (6.3).
+         */
+        QuadratureSensor: {
+            /**
+             * @description Quadrature with unwrap: Displacement from the phase of two beams (6.3). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "quadrature";
+            /**
+             * @description run even while the sensor in use does not need it; it puts out 0 while it rests
+             * @default false
+             */
+            always?: boolean;
+            /**
+             * @description distance between the beams it assumes, µm
+             * @default 1
+             */
+            spacing_um?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Range
+         * @description Range of a value.
+         */
+        Range: {
+            /** @description smallest value */
+            min: number;
+            /** @description largest value */
+            max: number;
+            /**
+             * @description how the points are spread between them
+             * @default linear
+             * @enum {string}
+             */
+            scale?: "linear" | "log";
+        };
+        /** Rate */
+        Rate: components["schemas"]["ConstantRate"] | components["schemas"]["NoiseRate"] | components["schemas"]["ProfileRate"] | components["schemas"]["SineRate"] | components["schemas"]["StepRate"];
+        /**
+         * RateBreakpoint
+         * @description One breakpoint.
+         */
+        RateBreakpoint: {
+            /**
+             * @description moment, ms
+             * @default 0
+             */
+            at_ms?: number;
+            /**
+             * @description angular rate at this moment, deg/s
+             * @default 0
+             */
+            deg_per_s?: number;
+        };
+        /** ReadOut */
+        ReadOut: components["schemas"]["AllanReadOut"];
+        /**
+         * RecursiveLeastSquaresIdentifier
+         * @description Recursive least squares (FFRLS): Recursive least squares with a forgetting factor, FFRLS (5.3.3.6-9).
+         */
+        RecursiveLeastSquaresIdentifier: {
+            /**
+             * @description Recursive least squares (FFRLS): Recursive least squares with a forgetting factor, FFRLS (5.3.3.6-9). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "recursive_least_squares";
+            /**
+             * @description window of the excitation, ms
+             * @default 20
+             */
+            excitation_window_ms?: number;
+            /**
+             * @description least relative excitation that counts as identifiable
+             * @default 1e-9
+             */
+            least_excitation?: number;
+            /**
+             * @description estimate; off holds the estimate, and on again trusts it no longer
+             * @default true
+             */
+            enabled?: boolean;
+            /**
+             * @description covariance at the start, as a multiple of I
+             * @default 100000000
+             */
+            initial_covariance?: number;
+            /**
+             * @description largest trace of the covariance, 0 for 1e10
+             * @default 10000000000
+             */
+            covariance_limit?: number;
+            /**
+             * @description estimate at the start
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description forgetting factor
+             * @default 0.98
+             */
+            forgetting?: number;
+            /**
+             * @description residual below which nothing is learnt, µm
+             * @default 0
+             */
+            dead_zone_um?: number;
+            /**
+             * @description trace below which the covariance starts anew, 0 for never
+             * @default 0
+             */
+            reset_below?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /** Reference */
+        Reference: components["schemas"]["ChirpReference"] | components["schemas"]["ConstantReference"] | components["schemas"]["MultiSineReference"] | components["schemas"]["PrbsReference"] | components["schemas"]["SineReference"] | components["schemas"]["SquareReference"] | components["schemas"]["StepReference"];
+        /**
+         * ReferenceBanksDiagnoser
+         * @description Self-tuning banks with records of their own: Each bank identifies its own sub-system, which runs in parallel with the device, and is tried on the device.
+         */
+        ReferenceBanksDiagnoser: {
+            /**
+             * @description Self-tuning banks with records of their own: Each bank identifies its own sub-system, which runs in parallel with the device, and is tried on the device. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "reference_banks";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on the assumed variance
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description forgetting factor
+             * @default 0.86
+             */
+            forgetting?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description covariance at the start, over unit matrix
+             * @default 100000000
+             */
+            initial_covariance?: number;
+            /**
+             * @description trace beyond which the covariance stays as it is
+             * @default 10000000000
+             */
+            trace_limit?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * RegionsDiagnoser
+         * @description Performance regions: Required, degraded or unacceptable performance, or danger, by the distance from the healthy motion.
+         */
+        RegionsDiagnoser: {
+            /**
+             * @description Performance regions: Required, degraded or unacceptable performance, or danger, by the distance from the healthy motion. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "regions";
+            /**
+             * @description loss at which performance is degraded
+             * @default 0.05
+             */
+            degraded_above?: number;
+            /**
+             * @description loss at which performance is unacceptable
+             * @default 0.25
+             */
+            unacceptable_above?: number;
+            /**
+             * @description loss at which there is danger
+             * @default 0.6
+             */
+            danger_above?: number;
+            /**
+             * @description displacement beyond which there is danger, µm
+             * @default 4.5
+             */
+            danger_um?: number;
+            /** @description samples of a comparison; a period of the tone unless given */
+            window?: number | null;
+            /** @description tone; the reference's unless given, Hz */
+            tone_hz?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ReseedDiagnoser
+         * @description Re-seeding bank: A bank with the true, small noise, whose hopeless filters are given the winner's state now and then.
+         */
+        ReseedDiagnoser: {
+            /**
+             * @description Re-seeding bank: A bank with the true, small noise, whose hopeless filters are given the winner's state now and then. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "reseed";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /**
+             * @description samples between two seedings
+             * @default 100
+             */
+            interval?: number;
+            /**
+             * @description probability above which a winner passes on its state
+             * @default 0.9
+             */
+            sure?: number;
+            /**
+             * @description probability below which a filter is given it
+             * @default 0.01
+             */
+            hopeless?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * ResonantController
+         * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them).
+         */
+        ResonantController: {
+            /**
+             * @description Resonant: A resonator for each harmonic of the reference's tone (Francis and Wonham 1976; repetitive with all of them). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "resonant";
+            /**
+             * @description harmonics of the tone
+             * @default 1
+             */
+            harmonics?: number;
+            /**
+             * @description rate of decay of the error, over the decay of the device itself
+             * @default 0.2
+             */
+            rate?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Scenario
+         * @description A bench, its events and its expectations.
+         */
+        Scenario: {
+            /**
+             * @description version of the notation
+             * @default 1
+             * @enum {integer}
+             */
+            schema?: 1;
+            /**
+             * @description short name
+             * @default unnamed
+             */
+            id?: string;
+            /**
+             * @description title for people
+             * @default
+             */
+            title?: string;
+            /**
+             * @description where it comes from: sections, figures, equations
+             * @default
+             */
+            source?: string;
+            /**
+             * @description what it shows, in a few sentences
+             * @default
+             */
+            summary?: string;
+            /**
+             * @description the published claim
+             * @default
+             */
+            claim?: string;
+            /** @description not read: it follows from the expectations */
+            verdict?: string | null;
+            /** @description length of a run, in samples */
+            samples?: number | null;
+            /** @description length of a run in its place, ms */
+            duration_ms?: number | null;
+            /**
+             * @description commands, each at its moment
+             * @default []
+             */
+            events?: components["schemas"]["ScenarioEvent"][];
+            /**
+             * @description expected and published figures of a run
+             * @default []
+             */
+            expect?: components["schemas"]["Expectation"][];
+            /** @description the PID that claims for a controller are compared with */
+            comparator?: components["schemas"]["Comparator"] | null;
+            /**
+             * @description printed numbers, drawn over the signals of a run
+             * @default []
+             */
+            printed?: components["schemas"]["Printed"][];
+            /**
+             * @description the part of a run that its figures are computed from
+             * @default {
+             *       "since_ms": 0,
+             *       "tail_share": 0.25,
+             *       "beside": ""
+             *     }
+             */
+            metrics?: components["schemas"]["Stretch"];
+            /** @description a computation in place of a run */
+            study?: components["schemas"]["Study"] | null;
+            /**
+             * @description ticks for each ms of device time
+             * @default 100
+             */
+            sample_rate_khz?: number;
+            /**
+             * @description the seed of all noise
+             * @default 1
+             */
+            seed?: number;
+            /**
+             * @description the reaction of a live bench of several persons whose driver leaves: hold continues, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            without_driver?: "hold" | "safe";
+            /** @description the device: an id of the catalogue, and values that replace its own */
+            device?: components["schemas"]["Device"];
+            /** @description the air around the device, and its age */
+            environment?: components["schemas"]["Environment"];
+            /** @description the equations of motion of the device */
+            plant?: components["schemas"]["Plant"];
+            /** @description the signal that drives the loop */
+            reference?: components["schemas"]["Reference"];
+            /** @description the reference model, which a controller makes the device follow */
+            model?: components["schemas"]["Model"];
+            /** @description the controllers of the other slots of a plant with several, by slot */
+            slots?: {
+                /** @enum {unknown} */
+                drive?: "drive_loop" | "drive_tracking" | "forced_drive" | "waveform_drive";
+            };
+            /** @description the controller that drives */
+            controller?: components["schemas"]["Controller"];
+            /** @description parameters of all controllers, by kind; the others run in shadow */
+            controllers?: {
+                [key: string]: unknown;
+            };
+            /** @description the sensor in use */
+            sensor?: components["schemas"]["Sensor"];
+            /** @description parameters of all sensors, by kind */
+            sensors?: {
+                [key: string]: unknown;
+            };
+            /** @description the stage between the controller and the device */
+            drive?: components["schemas"]["Drive"] | components["schemas"]["AxisDrive"];
+            /** @description the limits at which the bench takes its outputs to their safe values */
+            guard?: components["schemas"]["Guard"] | components["schemas"]["AxisGuard"];
+            /** @description identifiers, each under a name of your own */
+            identifiers?: {
+                [key: string]: components["schemas"]["Identifier"];
+            };
+            /** @description diagnosers, each under a name of your own */
+            diagnosers?: {
+                [key: string]: components["schemas"]["Diagnoser"];
+            };
+            /** @description read-outs of a gyroscope, each under a name of your own */
+            readouts?: {
+                [key: string]: components["schemas"]["ReadOut"];
+            };
+            /** @description benches that run beside this one and differ from it in some sections, each under a name of your own */
+            twins?: {
+                [key: string]: unknown;
+            };
+            /** @description units of your own, by name: their text */
+            units?: {
+                [key: string]: components["schemas"]["OwnUnit"];
+            };
+            /** @description installed packages whose blocks the bench names; the bench writes this table itself */
+            packages?: {
+                [key: string]: components["schemas"]["PackageEntry"];
+            };
+            /** @description the angular rate of the frame of a gyroscope */
+            rate?: components["schemas"]["Rate"];
+            /** @description the waveform that a controller of a gyroscope may put out */
+            waveform?: components["schemas"]["Reference"];
+        };
+        /**
+         * ScenarioEvent
+         * @description Commands to the bench at one moment.
+         */
+        ScenarioEvent: {
+            /** @description the sample at which the command takes effect */
+            at_sample?: number | null;
+            /** @description the device time at which the command takes effect, ms */
+            at_ms?: number | null;
+            /** @description the condition at which the command takes effect, '<signal> > <value>' or '<signal> < <value>'; it counts from at_sample on */
+            when?: string | null;
+            /**
+             * @description leave the tripped state
+             * @enum {boolean}
+             */
+            reset_trip?: true;
+            /** @description faults to take away, by name, or all of them */
+            heal?: string[] | "all";
+            /** @description name of the fault */
+            fault?: string;
+            /** @description size of the fault, in its own unit */
+            severity?: number;
+            /** @description how the severity comes */
+            profile?: components["schemas"]["Profile"];
+            /** @description the other parameters of the fault, by name */
+            parameters?: {
+                [key: string]: unknown;
+            };
+            /** @description values by dotted path */
+            set?: {
+                [key: string]: unknown;
+            };
+            /** @description name of the controller that drives from then on */
+            switch?: string;
+            /** @description start it anew, not as it ran in shadow */
+            cold?: boolean;
+            /** @description the reason, in words */
+            make_safe?: string;
+        };
+        /**
+         * ScenarioId
+         * @description An id of the library.
+         */
+        ScenarioId: string;
+        /**
+         * Seeds
+         * @description Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
+         */
+        Seeds: {
+            /**
+             * @description first seed
+             * @default 1
+             */
+            first?: number;
+            /**
+             * @description number of seeds
+             * @default 1
+             */
+            count?: number;
+        };
+        /**
+         * SelfSlidingController
+         * @description Self-sliding control: Self-sliding adaptive control of chapter 4: static gains on r, y and e, adapted by the sign of the error.
+         */
+        SelfSlidingController: {
+            /**
+             * @description Self-sliding control: Self-sliding adaptive control of chapter 4: static gains on r, y and e, adapted by the sign of the error. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "self_sliding";
+            /**
+             * @description adaptation gain P0
+             * @default 0.03
+             */
+            adaptation_gain?: number;
+            /**
+             * @description augmented error with filtered regressor, plain error, surface with velocity, or augmented error with the raw regressor as printed
+             * @default augmented
+             * @enum {string}
+             */
+            form?: "augmented" | "relative_degree_one" | "velocity" | "printed";
+            /**
+             * @description error measured minus model, or as printed
+             * @default working
+             * @enum {string}
+             */
+            signs?: "working" | "printed";
+            /**
+             * @description gain of the weight of the auxiliary error
+             * @default 0.3
+             */
+            alpha_gain?: number;
+            /**
+             * @description c of the surface with velocity, over w0
+             * @default 2
+             */
+            surface_slope?: number;
+            /**
+             * @description boundary layer of the sign, 0 for none, µm
+             * @default 0
+             */
+            layer_um?: number;
+            /**
+             * @description gains at the start: matched to the nominal device, or zero
+             * @default nominal
+             * @enum {string}
+             */
+            start?: "nominal" | "zero";
+            /**
+             * @description leakage of the gains, per 1/w0
+             * @default 0
+             */
+            leakage?: number;
+            /**
+             * @description bound of the gains, 0 for none
+             * @default 0
+             */
+            gain_bound?: number;
+            /**
+             * @description velocity from the plant itself, from the difference of two samples, or from an observer
+             * @default true
+             * @enum {string}
+             */
+            velocity?: "true" | "difference" | "observer";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SelfTuningDiagnoser
+         * @description Self-tuning estimator: Recursive least squares with forgetting on the device; a hypothesis is likely when the estimate is near it.
+         */
+        SelfTuningDiagnoser: {
+            /**
+             * @description Self-tuning estimator: Recursive least squares with forgetting on the device; a hypothesis is likely when the estimate is near it. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "self_tuning";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on the assumed variance
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description forgetting factor
+             * @default 0.86
+             */
+            forgetting?: number;
+            /**
+             * @description what becomes of the forgetting factor
+             * @default fixed
+             * @enum {string}
+             */
+            adaptation?: "fixed" | "direct" | "stepped" | "printed";
+            /**
+             * @description forgetting factor at the start, when it adapts
+             * @default 1
+             */
+            initial_forgetting?: number;
+            /**
+             * @description step of the factor, mu; not for direct
+             * @default 0.0001
+             */
+            forgetting_step?: number;
+            /**
+             * @description R above which direct adaptation acts
+             * @default 5
+             */
+            gate?: number;
+            /**
+             * @description smallest factor
+             * @default 0.2
+             */
+            least_forgetting?: number;
+            /**
+             * @description samples of R of the direct adaptation
+             * @default 3
+             */
+            innovation_window?: number;
+            /**
+             * @description pass both signals through 1/A(q) of the healthy device
+             * @default false
+             */
+            prefilter?: boolean;
+            /** @description variance of the equation error, s^2; from the sensor noise unless given, µm² */
+            noise_variance?: number | null;
+            /**
+             * @description covariance at the start, over unit matrix
+             * @default 100000000
+             */
+            initial_covariance?: number;
+            /**
+             * @description trace beyond which the covariance stays as it is
+             * @default 10000000000
+             */
+            trace_limit?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SenseAxisSyncController
+         * @description Sense-axis synchronisation: Makes y follow the y of the partner, `e=y-y_m\to0`; or zero, `y_m=0`, which is drift reduction.
+         */
+        SenseAxisSyncController: {
+            /**
+             * @description Sense-axis synchronisation: Makes y follow the y of the partner, `e=y-y_m\to0`; or zero, `y_m=0`, which is drift reduction. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "sense_axis_sync";
+            /**
+             * @description y of the partner, or no swing at all
+             * @default partner
+             * @enum {string}
+             */
+            follow?: "partner" | "rest";
+            /**
+             * @description rate with which the forces are learned, 1/ms
+             * @default 0.25
+             */
+            rate_per_ms?: number;
+            /** @description damping added over the mass; the split of the modes unless given, 1/ms */
+            damping_per_ms?: number | null;
+            /**
+             * @description bandwidth of each of two low-passes behind the rate, Hz
+             * @default 20
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description error of the phase of the demodulation, deg
+             * @default 0
+             */
+            phase_error_deg?: number;
+            /**
+             * @description turn y back by the phase of the nominal sense axis
+             * @default false
+             */
+            correct_phase?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SensingStudy
+         * @description Sensor over seeds
+         */
+        SensingStudy: {
+            /**
+             * @description Sensor over seeds (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "sensing";
+            /**
+             * @description seeds, starting at the seed of the bench
+             * @default 60
+             */
+            runs?: number;
+            /**
+             * @description length of a run, ms
+             * @default 20
+             */
+            duration_ms?: number;
+        };
+        /** Sensor */
+        Sensor: components["schemas"]["CapacitiveSensor"] | components["schemas"]["IdealSensor"] | components["schemas"]["PeakValleySensor"] | components["schemas"]["PickOffSensor"] | components["schemas"]["QuadratureSensor"] | components["schemas"]["QuadratureKalmanSensor"] | components["schemas"]["SingleBeamSensor"];
+        /**
+         * SineRate
+         * @description Sine of the rate: Rate that swings, `\Omega(t)=\Omega_0\sin(2\pi ft+\varphi)`.
+         */
+        SineRate: {
+            /**
+             * @description Sine of the rate: Rate that swings, `\Omega(t)=\Omega_0\sin(2\pi ft+\varphi)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "sine";
+            /**
+             * @description angle random walk N, deg/√h
+             * @default 0
+             */
+            angle_random_walk_deg_rt_h?: number;
+            /**
+             * @description bias instability B, deg/h
+             * @default 0
+             */
+            bias_instability_deg_h?: number;
+            /**
+             * @description rate random walk K, deg/h/√h
+             * @default 0
+             */
+            rate_random_walk_deg_h_rt_h?: number;
+            /**
+             * @description amplitude, deg/s
+             * @default 100
+             */
+            deg_per_s?: number;
+            /**
+             * @description frequency, Hz
+             * @default 1
+             */
+            frequency_hz?: number;
+            /**
+             * @description phase at t = 0, deg
+             * @default 0
+             */
+            phase_deg?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SineReference
+         * @description Sine: One tone, `r(t)=r_0+A\sin(2\pi f t+\varphi)`.
+         */
+        SineReference: {
+            /**
+             * @description Sine: One tone, `r(t)=r_0+A\sin(2\pi f t+\varphi)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "sine";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description frequency, Hz
+             * @default 1000
+             */
+            frequency_hz?: number;
+            /**
+             * @description phase at t = 0, deg
+             * @default 0
+             */
+            phase_deg?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SingleBeamSensor
+         * @description Single beam, several hypotheses: Displacement from one beam by several extended Kalman filters that know the device and the voltage.
+         */
+        SingleBeamSensor: {
+            /**
+             * @description Single beam, several hypotheses: Displacement from one beam by several extended Kalman filters that know the device and the voltage. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "single_beam";
+            /**
+             * @description run even while the sensor in use does not need it; it puts out 0 while it rests
+             * @default false
+             */
+            always?: boolean;
+            /**
+             * @description amplitude of the motion it is tuned for, µm
+             * @default 4
+             */
+            stroke_um?: number;
+            /**
+             * @description stiffness it assumes over the nominal one
+             * @default 1
+             */
+            stiffness?: number;
+            /**
+             * @description force the model may lack, over the spring force at that amplitude
+             * @default 0.1
+             */
+            model_error?: number;
+            /**
+             * @description how fast that force may wander, 1/ms
+             * @default 4
+             */
+            force_rate_per_ms?: number;
+            /**
+             * @description memory of the likelihood, ms
+             * @default 2.8
+             */
+            memory_ms?: number;
+            /**
+             * @description logarithm of the odds against a reflection
+             * @default 25
+             */
+            reflection_odds?: number;
+            /**
+             * @description log-likelihood below the best at which a hypothesis is dropped
+             * @default 40
+             */
+            drop?: number;
+            /**
+             * @description turns this near an extreme are reflected, µm
+             * @default 0.5
+             */
+            near_um?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SlavedLateralPlant
+         * @description Slaved lateral plant (calibration): Sideways motion tied to the travel, `\eta=\kappa x`: a calibration to the text's 1.67 um, not physics.
+         */
+        SlavedLateralPlant: {
+            /**
+             * @description Slaved lateral plant (calibration): Sideways motion tied to the travel, `\eta=\kappa x`: a calibration to the text's 1.67 um, not physics. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "slaved_lateral";
+            /**
+             * @description displacement at the start, µm
+             * @default 0
+             */
+            initial_displacement_um?: number;
+            /**
+             * @description velocity at the start, µm/ms
+             * @default 0
+             */
+            initial_velocity_um_ms?: number;
+            /**
+             * @description white noise on the drive voltage, rms per sample, V
+             * @default 0
+             */
+            drive_noise_v?: number;
+            /**
+             * @description thermomechanical force noise of the damping
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /** @description gap between fingers as etched, instead of the device's; force, capacitance and pull-in go with it, µm */
+            gap_um?: number | null;
+            /**
+             * @description gap that is left where fingers touch, µm
+             * @default 0.15
+             */
+            contact_clearance_um?: number;
+            /**
+             * @description stiffness of touching fingers, N/m
+             * @default 5000
+             */
+            contact_stiffness_n_m?: number;
+            /**
+             * @description damping of touching fingers, N·s/m
+             * @default 0.000015
+             */
+            contact_damping_ns_m?: number;
+            /**
+             * @description touching fingers short their comb
+             * @default true
+             */
+            short_on_contact?: boolean;
+            /**
+             * @description travel to the end stops, µm
+             * @default 20
+             */
+            stop_um?: number;
+            /**
+             * @description stiffness of a stop, N/m
+             * @default 50
+             */
+            stop_stiffness_n_m?: number;
+            /**
+             * @description damping of a stop, N·s/m
+             * @default 0.00002
+             */
+            stop_damping_ns_m?: number;
+            /**
+             * @description stiffness along x with the adhesion, instead of the device's, N/m
+             * @default 0.0784
+             */
+            stiffness_n_m?: number;
+            /**
+             * @description lateral displacement over travel
+             * @default 0.42
+             */
+            ratio?: number;
+            /**
+             * @description overlap that pulls sideways, µm
+             * @default 5
+             */
+            effective_overlap_um?: number;
+            /**
+             * @description longest substep, µs
+             * @default 0.25
+             */
+            step_us?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * SquareReference
+         * @description Square wave: Square wave, `r(t)=r_0\pm A`.
+         */
+        SquareReference: {
+            /**
+             * @description Square wave: Square wave, `r(t)=r_0\pm A`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "square";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description frequency, Hz
+             * @default 200
+             */
+            frequency_hz?: number;
+            /**
+             * @description share of the period that is high
+             * @default 0.5
+             */
+            duty?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * StepRate
+         * @description Step of the rate: Step of the rate, `\Omega(t)=\Omega_0\,1(t-t_0)`.
+         */
+        StepRate: {
+            /**
+             * @description Step of the rate: Step of the rate, `\Omega(t)=\Omega_0\,1(t-t_0)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "step";
+            /**
+             * @description angle random walk N, deg/√h
+             * @default 0
+             */
+            angle_random_walk_deg_rt_h?: number;
+            /**
+             * @description bias instability B, deg/h
+             * @default 0
+             */
+            bias_instability_deg_h?: number;
+            /**
+             * @description rate random walk K, deg/h/√h
+             * @default 0
+             */
+            rate_random_walk_deg_h_rt_h?: number;
+            /**
+             * @description angular rate after the step, deg/s
+             * @default 100
+             */
+            deg_per_s?: number;
+            /**
+             * @description moment of the step, ms
+             * @default 0
+             */
+            start_ms?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * StepReference
+         * @description Step: Step, `r(t)=r_0+A\,1(t-t_0)`.
+         */
+        StepReference: {
+            /**
+             * @description Step: Step, `r(t)=r_0+A\,1(t-t_0)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "step";
+            /** @description amplitude, V */
+            amplitude_v?: number | null;
+            /** @description amplitude as static displacement, instead of volts, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description constant added, V
+             * @default 0
+             */
+            offset_v?: number;
+            /**
+             * @description moment of the step, ms
+             * @default 0
+             */
+            start_ms?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * Stretch
+         * @description The options ``[metrics]`` of a scenario.
+         */
+        Stretch: {
+            /**
+             * @description moment that errors and settling count from, ms
+             * @default 0
+             */
+            since_ms?: number;
+            /**
+             * @description share of the run that counts as its tail
+             * @default 0.25
+             */
+            tail_share?: number;
+            /**
+             * @description diagnoser over whose delays the delays of others are taken
+             * @default
+             */
+            beside?: string;
+        };
+        /** Study */
+        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
+        /**
+         * StvscController
+         * @description Self-tuning VSC: Self-tuning variable structure control, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
+         */
+        StvscController: {
+            /**
+             * @description Self-tuning VSC: Self-tuning variable structure control, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "stvsc";
+            /**
+             * @description Q over R of the Riccati equation, in w0^2
+             * @default 1
+             */
+            surface_weight?: number;
+            /**
+             * @description boundary layer, 0 for a plain sign, µm
+             * @default 0.3
+             */
+            layer_um?: number;
+            /**
+             * @description velocity from the plant itself, from the difference of two samples, or from an observer
+             * @default true
+             * @enum {string}
+             */
+            velocity?: "true" | "difference" | "observer";
+            /**
+             * @description equivalent control with switching on top, or switching alone
+             * @default equivalent
+             * @enum {string}
+             */
+            law?: "equivalent" | "switching";
+            /** @description share of the sum of all terms that switches; 0.3 beside the equivalent control, 1 alone */
+            switching_share?: number | null;
+            /**
+             * @description gains that follow from the surface, or as printed
+             * @default working
+             * @enum {string}
+             */
+            gains?: "working" | "printed";
+            /**
+             * @description gain g of the estimator
+             * @default 1
+             */
+            estimator_gain?: number;
+            /**
+             * @description double pole of the filters over w0
+             * @default 1
+             */
+            filter_pole?: number;
+            /** @description weight of y and its derivative; 1/kp^2 unless given, so that y counts in volts, V²/µm² */
+            output_weight?: number | null;
+            /**
+             * @description divide by 1 + w'Gw; off as printed
+             * @default true
+             */
+            normalise?: boolean;
+            /**
+             * @description least share of the nominal gain the estimate may fall to
+             * @default 0.1
+             */
+            gain_floor?: number;
+            /**
+             * @description error the surface is made of; the printed one is the error of the estimate
+             * @default tracking
+             * @enum {string}
+             */
+            surface?: "tracking" | "estimation";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * SweepVariant
+         * @description One of several alternatives, such as a controller or a set of diagnosers.
+         */
+        SweepVariant: {
+            /** @description name in tables */
+            name: string;
+            /** @description values of the scenario, by dotted path */
+            set: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * SweptSineStudy
+         * @description Swept sine
+         */
+        SweptSineStudy: {
+            /**
+             * @description Swept sine (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "swept_sine";
+            /**
+             * @description amplitude, V
+             * @default 2
+             */
+            amplitude_v?: number;
+            /**
+             * @description tones of each of the two passes
+             * @default 31
+             */
+            points?: number;
+            /**
+             * @description cycles measured at each tone
+             * @default 40
+             */
+            cycles?: number;
+            /**
+             * @description time constants waited before
+             * @default 12
+             */
+            settle?: number;
+            /** @description lowest tone; a quarter of the resonance unless given, Hz */
+            start_hz?: number | null;
+            /** @description highest tone; twice the resonance unless given, Hz */
+            stop_hz?: number | null;
+        };
+        /**
+         * Tone
+         * @description One tone of the sum.
+         */
+        Tone: {
+            /**
+             * @description frequency, Hz
+             * @default 1000
+             */
+            frequency_hz?: number;
+            /**
+             * @description share of the amplitude
+             * @default 1
+             */
+            amplitude?: number;
+            /**
+             * @description phase at t = 0, deg
+             * @default 0
+             */
+            phase_deg?: number;
+        };
+        /**
+         * TransferFunction
+         * @description A plant `\frac{b_0}{a_2s^2+a_1s+a_0}` in its own unit of time; a volt in, a micrometre out.
+         */
+        TransferFunction: {
+            /**
+             * @description numerator b0
+             * @default 1
+             */
+            gain?: number;
+            /** @description coefficients of the denominator, highest power first */
+            denominator?: number[];
+            /**
+             * @description unit of time, ms
+             * @default 1000
+             */
+            time_unit_ms?: number;
+        };
+        /**
+         * TransferFunctionPlant
+         * @description Transfer function: A plant without units, `a_2\ddot x+a_1\dot x+a_0x=b_0u`: chapter 4 and appendix B.
+         */
+        TransferFunctionPlant: {
+            /**
+             * @description Transfer function: A plant without units, `a_2\ddot x+a_1\dot x+a_0x=b_0u`: chapter 4 and appendix B. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "transfer_function";
+            /**
+             * @description displacement at the start, µm
+             * @default 0
+             */
+            initial_displacement_um?: number;
+            /**
+             * @description velocity at the start, µm/ms
+             * @default 0
+             */
+            initial_velocity_um_ms?: number;
+            /**
+             * @description white noise on the drive voltage, rms per sample, V
+             * @default 0
+             */
+            drive_noise_v?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * TwoOutputDiagnoser
+         * @description Kalman bank, displacement and velocity: The bank with C = I, equation 5.2.4: both states are measured.
+         */
+        TwoOutputDiagnoser: {
+            /**
+             * @description Kalman bank, displacement and velocity: The bank with C = I, equation 5.2.4: both states are measured. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "two_output";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 0.3
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description factor on both assumed variances
+             * @default 1
+             */
+            assumed_noise_scale?: number;
+            /**
+             * @description voltage taken for a tick: the parabola through its start, middle and end, or one of these as if it were held; of a held drive all the same
+             * @default parabola
+             * @enum {string}
+             */
+            voltage?: "parabola" | "middle" | "start";
+            /**
+             * @description drive (rms over the shuttle's own memory) below which residuals are no evidence, V
+             * @default 0.001
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description smallest probability
+             * @default 0.001
+             */
+            probability_floor?: number;
+            /** @description assumed noise of the velocity; the velocimeter's own unless given, µm/ms */
+            velocity_noise_um_ms?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * VscController
+         * @description Variable structure control: Variable structure control with fixed gains, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
+         */
+        VscController: {
+            /**
+             * @description Variable structure control: Variable structure control with fixed gains, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "vsc";
+            /**
+             * @description Q over R of the Riccati equation, in w0^2
+             * @default 1
+             */
+            surface_weight?: number;
+            /**
+             * @description boundary layer, 0 for a plain sign, µm
+             * @default 0.3
+             */
+            layer_um?: number;
+            /**
+             * @description velocity from the plant itself, from the difference of two samples, or from an observer
+             * @default true
+             * @enum {string}
+             */
+            velocity?: "true" | "difference" | "observer";
+            /**
+             * @description equivalent control with switching on top, or switching alone
+             * @default equivalent
+             * @enum {string}
+             */
+            law?: "equivalent" | "switching";
+            /** @description share of the sum of all terms that switches; 0.3 beside the equivalent control, 1 alone */
+            switching_share?: number | null;
+            /**
+             * @description gains that follow from the surface, or as printed
+             * @default working
+             * @enum {string}
+             */
+            gains?: "working" | "printed";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * VsmrcController
+         * @description Variable structure MRC: Variable structure model reference control, `u=\theta_{nom}^Tw+(c_r|r|+c_y|y|)\,\mathrm{sat}(s/\Phi)`.
+         */
+        VsmrcController: {
+            /**
+             * @description Variable structure MRC: Variable structure model reference control, `u=\theta_{nom}^Tw+(c_r|r|+c_y|y|)\,\mathrm{sat}(s/\Phi)`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "vsmrc";
+            /**
+             * @description Q over R of the Riccati equation, in w0^2
+             * @default 1
+             */
+            surface_weight?: number;
+            /**
+             * @description boundary layer, 0 for a plain sign, µm
+             * @default 0.3
+             */
+            layer_um?: number;
+            /**
+             * @description velocity from the plant itself, from the difference of two samples, or from an observer
+             * @default true
+             * @enum {string}
+             */
+            velocity?: "true" | "difference" | "observer";
+            /**
+             * @description feed the gains that match the nominal device; off leaves all to the switching
+             * @default true
+             */
+            nominal?: boolean;
+            /**
+             * @description voltage switched per volt of reference, c_r
+             * @default 0.2
+             */
+            reference_bound?: number;
+            /** @description voltage switched per displacement, c_y; unless given, what holds the device there, V/µm */
+            output_bound_v_um?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * WholeAngleController
+         * @description Whole-angle read-out: Lets the mass swing along a line that keeps its direction in space; the angle of the line is the angle turned.
+         */
+        WholeAngleController: {
+            /**
+             * @description Whole-angle read-out: Lets the mass swing along a line that keeps its direction in space; the angle of the line is the angle turned. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "whole_angle";
+            /** @description amplitude to hold; the device's own unless given, µm */
+            amplitude_um?: number | null;
+            /**
+             * @description gain gamma of the energy, 1/ms
+             * @default 0.2
+             */
+            energy_gain_per_ms?: number;
+            /**
+             * @description gain kappa of the area, 1/ms
+             * @default 0.2
+             */
+            area_gain_per_ms?: number;
+            /**
+             * @description gain rho of the mode tuning, 1/(µm^4·ms²)
+             * @default 0
+             */
+            tuning_gain?: number;
+            /**
+             * @description bandwidth of the low-pass behind the rate, Hz
+             * @default 20
+             */
+            bandwidth_hz?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
     };
-    responses: never;
+    responses: {
+        /** @description The request is refused */
+        Refused: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+        /** @description The server cannot answer */
+        Failed: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": components["schemas"]["ErrorReply"];
+            };
+        };
+    };
     parameters: never;
     requestBodies: never;
     headers: never;
@@ -9567,7 +15213,7 @@ export type Curve = components['schemas']['Curve'];
 export type DefinitenessReport = components['schemas']['DefinitenessReport'];
 export type Design = components['schemas']['Design'];
 export type DeviceCard = components['schemas']['DeviceCard'];
-export type Devices = components['schemas']['Devices'];
+export type DeviceList = components['schemas']['DeviceList'];
 export type DiagnoserInfo = components['schemas']['DiagnoserInfo'];
 export type DiagnosisTally = components['schemas']['DiagnosisTally'];
 export type Difference = components['schemas']['Difference'];
@@ -9579,6 +15225,7 @@ export type Drives = components['schemas']['Drives'];
 export type DrivingTurn = components['schemas']['DrivingTurn'];
 export type Ended = components['schemas']['Ended'];
 export type EquationCard = components['schemas']['EquationCard'];
+export type ErrorBody = components['schemas']['ErrorBody'];
 export type Estimate = components['schemas']['Estimate'];
 export type Evaluation = components['schemas']['Evaluation'];
 export type Event = components['schemas']['Event'];
@@ -9605,10 +15252,11 @@ export type GameCard = components['schemas']['GameCard'];
 export type GameList = components['schemas']['GameList'];
 export type GivenLayout = components['schemas']['GivenLayout'];
 export type GivenView = components['schemas']['GivenView'];
+export type Grade = components['schemas']['Grade'];
+export type GradeList = components['schemas']['GradeList'];
 export type Hand = components['schemas']['Hand'];
-export type HandIn = components['schemas']['HandIn'];
 export type Hands = components['schemas']['Hands'];
-export type Heal = components['schemas']['Heal'];
+export type HealFaults = components['schemas']['HealFaults'];
 export type Health = components['schemas']['Health'];
 export type HiddenQuestion = components['schemas']['HiddenQuestion'];
 export type Hide = components['schemas']['Hide'];
@@ -9643,11 +15291,12 @@ export type Me = components['schemas']['Me'];
 export type MeasuredPlant = components['schemas']['MeasuredPlant'];
 export type MeasuredPlants = components['schemas']['MeasuredPlants'];
 export type MeasuredTone = components['schemas']['MeasuredTone'];
-export type Members = components['schemas']['Members'];
+export type MemberList = components['schemas']['MemberList'];
 export type Minutes = components['schemas']['Minutes'];
 export type ModelAccount = components['schemas']['ModelAccount'];
 export type NamedPair = components['schemas']['NamedPair'];
 export type NarrationList = components['schemas']['NarrationList'];
+export type NewAttempt = components['schemas']['NewAttempt'];
 export type NewBallot = components['schemas']['NewBallot'];
 export type NewBench = components['schemas']['NewBench'];
 export type NewClass = components['schemas']['NewClass'];
@@ -9704,8 +15353,10 @@ export type Roc = components['schemas']['Roc'];
 export type Row = components['schemas']['Row'];
 export type Run = components['schemas']['Run'];
 export type RunComparison = components['schemas']['RunComparison'];
+export type RunExpectation = components['schemas']['RunExpectation'];
 export type RunList = components['schemas']['RunList'];
 export type RunSignal = components['schemas']['RunSignal'];
+export type RunSummary = components['schemas']['RunSummary'];
 export type RunTrace = components['schemas']['RunTrace'];
 export type RunTraces = components['schemas']['RunTraces'];
 export type SafeBoundary = components['schemas']['SafeBoundary'];
@@ -9714,12 +15365,14 @@ export type ScenarioCard = components['schemas']['ScenarioCard'];
 export type ScenarioList = components['schemas']['ScenarioList'];
 export type ScenarioSource = components['schemas']['ScenarioSource'];
 export type ScenarioText = components['schemas']['ScenarioText'];
+export type SchemaCard = components['schemas']['SchemaCard'];
+export type SchemaList = components['schemas']['SchemaList'];
 export type Scores = components['schemas']['Scores'];
 export type SectionView = components['schemas']['SectionView'];
 export type Seek = components['schemas']['Seek'];
 export type Sentence = components['schemas']['Sentence'];
-export type Set = components['schemas']['Set'];
 export type SetName = components['schemas']['SetName'];
+export type SetValues = components['schemas']['SetValues'];
 export type SheetBrief = components['schemas']['SheetBrief'];
 export type SheetCard = components['schemas']['SheetCard'];
 export type SheetForAll = components['schemas']['SheetForAll'];
@@ -9742,6 +15395,7 @@ export type Standing = components['schemas']['Standing'];
 export type Start = components['schemas']['Start'];
 export type Step = components['schemas']['Step'];
 export type StepAnswer = components['schemas']['StepAnswer'];
+export type StepGrade = components['schemas']['StepGrade'];
 export type StepPeriod = components['schemas']['StepPeriod'];
 export type StepView = components['schemas']['StepView'];
 export type StudentGame = components['schemas']['StudentGame'];
@@ -9792,9 +15446,8 @@ export type TriggerSpec = components['schemas']['TriggerSpec'];
 export type Unsubscribe = components['schemas']['Unsubscribe'];
 export type ClientMessage = components['schemas']['ClientMessage'];
 export type CaptureList = components['schemas']['CaptureList'];
-export type ErrorBody = components['schemas']['ErrorBody'];
 export type ErrorMessage = components['schemas']['ErrorMessage'];
-export type Events = components['schemas']['Events'];
+export type EventsMessage = components['schemas']['EventsMessage'];
 export type Hello = components['schemas']['Hello'];
 export type Narrated = components['schemas']['Narrated'];
 export type Notice = components['schemas']['Notice'];
@@ -9804,6 +15457,132 @@ export type Status = components['schemas']['Status'];
 export type ServerMessage = components['schemas']['ServerMessage'];
 export type ErrorReply = components['schemas']['ErrorReply'];
 export type WorkProgress = components['schemas']['WorkProgress'];
+export type AdaptiveForgettingIdentifier = components['schemas']['AdaptiveForgettingIdentifier'];
+export type AdaptiveRateController = components['schemas']['AdaptiveRateController'];
+export type AdrcController = components['schemas']['AdrcController'];
+export type AllanReadOut = components['schemas']['AllanReadOut'];
+export type AnchoredDiagnoser = components['schemas']['AnchoredDiagnoser'];
+export type ArxBankDiagnoser = components['schemas']['ArxBankDiagnoser'];
+export type AxesBankDiagnoser = components['schemas']['AxesBankDiagnoser'];
+export type AxesHypothesis = components['schemas']['AxesHypothesis'];
+export type AxisDrive = components['schemas']['AxisDrive'];
+export type AxisGuard = components['schemas']['AxisGuard'];
+export type BeamWidthStudy = components['schemas']['BeamWidthStudy'];
+export type Campaign = components['schemas']['Campaign'];
+export type CapacitiveSensor = components['schemas']['CapacitiveSensor'];
+export type ChirpReference = components['schemas']['ChirpReference'];
+export type Comparator = components['schemas']['Comparator'];
+export type ConsistencyDiagnoser = components['schemas']['ConsistencyDiagnoser'];
+export type ConstantRate = components['schemas']['ConstantRate'];
+export type ConstantReference = components['schemas']['ConstantReference'];
+export type Controller = components['schemas']['Controller'];
+export type CusumDiagnoser = components['schemas']['CusumDiagnoser'];
+export type DetectorsStudy = components['schemas']['DetectorsStudy'];
+export type Device = components['schemas']['Device'];
+export type Diagnoser = components['schemas']['Diagnoser'];
+export type DrawnGyroscope = components['schemas']['DrawnGyroscope'];
+export type Drive = components['schemas']['Drive'];
+export type Environment = components['schemas']['Environment'];
+export type EstimatesStudy = components['schemas']['EstimatesStudy'];
+export type ExcitationIdentifier = components['schemas']['ExcitationIdentifier'];
+export type Expectation = components['schemas']['Expectation'];
+export type FlopsStudy = components['schemas']['FlopsStudy'];
+export type ForceToRebalanceController = components['schemas']['ForceToRebalanceController'];
+export type FreeBanksDiagnoser = components['schemas']['FreeBanksDiagnoser'];
+export type FreeDecayStudy = components['schemas']['FreeDecayStudy'];
+export type FrequencyResponseStudy = components['schemas']['FrequencyResponseStudy'];
+export type GainAdaptationController = components['schemas']['GainAdaptationController'];
+export type GainAdaptationStudy = components['schemas']['GainAdaptationStudy'];
+export type Geometry = components['schemas']['Geometry'];
+export type GradientIdentifier = components['schemas']['GradientIdentifier'];
+export type Guard = components['schemas']['Guard'];
+export type GyroscopePairPlant = components['schemas']['GyroscopePairPlant'];
+export type GyroscopePlant = components['schemas']['GyroscopePlant'];
+export type GyroscopeTable = components['schemas']['GyroscopeTable'];
+export type IdealSensor = components['schemas']['IdealSensor'];
+export type Identifier = components['schemas']['Identifier'];
+export type ImmDiagnoser = components['schemas']['ImmDiagnoser'];
+export type IndirectMracController = components['schemas']['IndirectMracController'];
+export type JoinedRecordsStudy = components['schemas']['JoinedRecordsStudy'];
+export type KalmanGainsStudy = components['schemas']['KalmanGainsStudy'];
+export type LatinHypercube = components['schemas']['LatinHypercube'];
+export type LeastSquaresIdentifier = components['schemas']['LeastSquaresIdentifier'];
+export type LinearPlant = components['schemas']['LinearPlant'];
+export type LockInDiagnoser = components['schemas']['LockInDiagnoser'];
+export type LockInGlrDiagnoser = components['schemas']['LockInGlrDiagnoser'];
+export type LqgController = components['schemas']['LqgController'];
+export type MimoAdaptiveController = components['schemas']['MimoAdaptiveController'];
+export type MmaeDiagnoser = components['schemas']['MmaeDiagnoser'];
+export type Model = components['schemas']['Model'];
+export type MonteCarloStudy = components['schemas']['MonteCarloStudy'];
+export type MovingBankDiagnoser = components['schemas']['MovingBankDiagnoser'];
+export type MracController = components['schemas']['MracController'];
+export type MracVelocityController = components['schemas']['MracVelocityController'];
+export type MultiSineReference = components['schemas']['MultiSineReference'];
+export type NoiseRate = components['schemas']['NoiseRate'];
+export type NonlinearPlant = components['schemas']['NonlinearPlant'];
+export type OpenLoopController = components['schemas']['OpenLoopController'];
+export type OpenLoopRateController = components['schemas']['OpenLoopRateController'];
+export type OutputsStudy = components['schemas']['OutputsStudy'];
+export type OwnUnit = components['schemas']['OwnUnit'];
+export type PackageEntry = components['schemas']['PackageEntry'];
+export type PeakValleySensor = components['schemas']['PeakValleySensor'];
+export type PersistencyStudy = components['schemas']['PersistencyStudy'];
+export type PickOffSensor = components['schemas']['PickOffSensor'];
+export type PidController = components['schemas']['PidController'];
+export type PlanarPlant = components['schemas']['PlanarPlant'];
+export type Plant = components['schemas']['Plant'];
+export type PositiveRealCase = components['schemas']['PositiveRealCase'];
+export type PositiveRealStudy = components['schemas']['PositiveRealStudy'];
+export type PrbsReference = components['schemas']['PrbsReference'];
+export type Printed = components['schemas']['Printed'];
+export type PrintedFigures = components['schemas']['PrintedFigures'];
+export type PrintedTableStudy = components['schemas']['PrintedTableStudy'];
+export type ProcessDeviations = components['schemas']['ProcessDeviations'];
+export type ProcessSpreadStudy = components['schemas']['ProcessSpreadStudy'];
+export type ProfileRate = components['schemas']['ProfileRate'];
+export type QuadratureKalmanSensor = components['schemas']['QuadratureKalmanSensor'];
+export type QuadratureSensor = components['schemas']['QuadratureSensor'];
+export type Range = components['schemas']['Range'];
+export type Rate = components['schemas']['Rate'];
+export type RateBreakpoint = components['schemas']['RateBreakpoint'];
+export type ReadOut = components['schemas']['ReadOut'];
+export type RecursiveLeastSquaresIdentifier = components['schemas']['RecursiveLeastSquaresIdentifier'];
+export type Reference = components['schemas']['Reference'];
+export type ReferenceBanksDiagnoser = components['schemas']['ReferenceBanksDiagnoser'];
+export type RegionsDiagnoser = components['schemas']['RegionsDiagnoser'];
+export type ReseedDiagnoser = components['schemas']['ReseedDiagnoser'];
+export type ResonantController = components['schemas']['ResonantController'];
+export type Scenario = components['schemas']['Scenario'];
+export type ScenarioEvent = components['schemas']['ScenarioEvent'];
+export type ScenarioId = components['schemas']['ScenarioId'];
+export type Seeds = components['schemas']['Seeds'];
+export type SelfSlidingController = components['schemas']['SelfSlidingController'];
+export type SelfTuningDiagnoser = components['schemas']['SelfTuningDiagnoser'];
+export type SenseAxisSyncController = components['schemas']['SenseAxisSyncController'];
+export type SensingStudy = components['schemas']['SensingStudy'];
+export type Sensor = components['schemas']['Sensor'];
+export type SineRate = components['schemas']['SineRate'];
+export type SineReference = components['schemas']['SineReference'];
+export type SingleBeamSensor = components['schemas']['SingleBeamSensor'];
+export type SlavedLateralPlant = components['schemas']['SlavedLateralPlant'];
+export type SquareReference = components['schemas']['SquareReference'];
+export type StepRate = components['schemas']['StepRate'];
+export type StepReference = components['schemas']['StepReference'];
+export type Stretch = components['schemas']['Stretch'];
+export type Study = components['schemas']['Study'];
+export type StvscController = components['schemas']['StvscController'];
+export type SweepVariant = components['schemas']['SweepVariant'];
+export type SweptSineStudy = components['schemas']['SweptSineStudy'];
+export type Tone = components['schemas']['Tone'];
+export type TransferFunction = components['schemas']['TransferFunction'];
+export type TransferFunctionPlant = components['schemas']['TransferFunctionPlant'];
+export type TwoOutputDiagnoser = components['schemas']['TwoOutputDiagnoser'];
+export type VscController = components['schemas']['VscController'];
+export type VsmrcController = components['schemas']['VsmrcController'];
+export type WholeAngleController = components['schemas']['WholeAngleController'];
+export type ResponseRefused = components['responses']['Refused'];
+export type ResponseFailed = components['responses']['Failed'];
 export type $defs = Record<string, never>;
 export interface operations {
     get_catalog: {
@@ -9827,15 +15606,8 @@ export interface operations {
                     "application/json": components["schemas"]["Catalogue"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_devices: {
@@ -9853,18 +15625,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Devices"];
+                    "application/json": components["schemas"]["DeviceList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     evaluate: {
@@ -9889,15 +15654,8 @@ export interface operations {
                     "application/json": components["schemas"]["Evaluation"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     bode: {
@@ -9922,15 +15680,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     spread: {
@@ -9955,15 +15706,8 @@ export interface operations {
                     "application/json": components["schemas"]["ProcessSpread"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_scenarios: {
@@ -9984,15 +15728,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_scenario: {
@@ -10016,15 +15753,8 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_scenario: {
@@ -10049,15 +15779,55 @@ export interface operations {
                     "application/json": components["schemas"]["ScenarioText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    list_schemas: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["ErrorReply"];
+                    "application/json": components["schemas"]["SchemaList"];
                 };
             };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    get_schema: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description scenario, campaign, sheet or lecture */
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/schema+json": Record<string, never>;
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_units: {
@@ -10085,15 +15855,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     check_unit: {
@@ -10118,15 +15881,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitCheck"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_unit: {
@@ -10150,15 +15906,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitText"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     keep_unit: {
@@ -10186,15 +15935,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnitEntry"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_unit: {
@@ -10216,15 +15958,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benches: {
@@ -10252,15 +15987,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     create_bench: {
@@ -10285,15 +16013,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench: {
@@ -10317,15 +16038,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_bench: {
@@ -10347,15 +16061,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     name_bench: {
@@ -10383,15 +16090,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reopen_bench: {
@@ -10415,15 +16115,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command: {
@@ -10438,7 +16131,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["Heal"] | components["schemas"]["Set"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
+                "application/json": components["schemas"]["Start"] | components["schemas"]["Pause"] | components["schemas"]["Step"] | components["schemas"]["StepPeriod"] | components["schemas"]["Reset"] | components["schemas"]["Undo"] | components["schemas"]["Redo"] | components["schemas"]["TimeScale"] | components["schemas"]["FastForward"] | components["schemas"]["Seek"] | components["schemas"]["Loop"] | components["schemas"]["Inject"] | components["schemas"]["HealFaults"] | components["schemas"]["SetValues"] | components["schemas"]["Switch"] | components["schemas"]["MakeSafe"] | components["schemas"]["ResetTrip"];
             };
         };
         responses: {
@@ -10451,15 +16144,8 @@ export interface operations {
                     "application/json": components["schemas"]["CommandResult"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_events: {
@@ -10490,15 +16176,8 @@ export interface operations {
                     "application/json": components["schemas"]["EventList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_scenario: {
@@ -10519,18 +16198,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_digest: {
@@ -10554,15 +16226,8 @@ export interface operations {
                     "application/json": components["schemas"]["Digest"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     fork_bench: {
@@ -10590,15 +16255,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     vary_bench: {
@@ -10626,15 +16284,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_narration: {
@@ -10667,15 +16318,8 @@ export interface operations {
                     "application/json": components["schemas"]["NarrationList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     identification: {
@@ -10703,15 +16347,8 @@ export interface operations {
                     "application/json": components["schemas"]["Identification"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     region: {
@@ -10738,15 +16375,8 @@ export interface operations {
                     "application/json": components["schemas"]["UnstableRegionMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     plants: {
@@ -10770,15 +16400,8 @@ export interface operations {
                     "application/json": components["schemas"]["MeasuredPlants"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     flops: {
@@ -10807,15 +16430,8 @@ export interface operations {
                     "application/json": components["schemas"]["Budget"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     explain_sample: {
@@ -10844,15 +16460,8 @@ export interface operations {
                     "application/json": components["schemas"]["Account"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_turn: {
@@ -10881,15 +16490,8 @@ export interface operations {
                     "application/json": components["schemas"]["Turn"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_bench_aliases: {
@@ -10918,15 +16520,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_aliases: {
@@ -10956,15 +16551,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_readout: {
@@ -10990,15 +16578,8 @@ export interface operations {
                     "application/json": components["schemas"]["RateReadout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_printed: {
@@ -11022,15 +16603,8 @@ export interface operations {
                     "application/json": components["schemas"]["MarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_claims: {
@@ -11054,15 +16628,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClaimList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_snapshots: {
@@ -11093,15 +16660,8 @@ export interface operations {
                     "application/json": components["schemas"]["SnapshotList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_snapshot: {
@@ -11129,15 +16689,8 @@ export interface operations {
                     "application/json": components["schemas"]["Snapshot"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_snapshot: {
@@ -11161,15 +16714,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     restore_snapshot: {
@@ -11195,15 +16741,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     save_parameter_set: {
@@ -11231,15 +16770,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     apply_parameter_set: {
@@ -11265,15 +16797,8 @@ export interface operations {
                     "application/json": components["schemas"]["Applied"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_parameter_sets: {
@@ -11301,15 +16826,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_parameter_set: {
@@ -11333,15 +16851,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_parameter_set: {
@@ -11363,15 +16874,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_parameter_set: {
@@ -11399,15 +16903,8 @@ export interface operations {
                     "application/json": components["schemas"]["ParameterSetDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_parameter_sets: {
@@ -11436,15 +16933,8 @@ export interface operations {
                     "application/json": components["schemas"]["Difference"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_bench_recordings: {
@@ -11475,15 +16965,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_recording: {
@@ -11511,15 +16994,8 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     stop_recording: {
@@ -11545,15 +17021,8 @@ export interface operations {
                     "application/json": components["schemas"]["Recording"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_recordings: {
@@ -11581,15 +17050,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording: {
@@ -11613,15 +17075,8 @@ export interface operations {
                     "application/json": components["schemas"]["RecordingDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_recording: {
@@ -11643,15 +17098,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     replay_recording: {
@@ -11679,15 +17127,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_recordings: {
@@ -11715,15 +17156,8 @@ export interface operations {
                     "application/json": components["schemas"]["Comparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_recording_trace: {
@@ -11755,20 +17189,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_trace: {
@@ -11801,20 +17228,13 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Trace"];
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_runs: {
@@ -11848,15 +17268,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_run: {
@@ -11890,15 +17303,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_runs: {
@@ -11923,15 +17329,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_finished_runs: {
@@ -11955,15 +17354,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunComparison"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     compare_traces: {
@@ -11991,15 +17383,8 @@ export interface operations {
                     "application/json": components["schemas"]["RunTraces"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run: {
@@ -12023,15 +17408,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_run: {
@@ -12055,15 +17433,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_run: {
@@ -12091,15 +17462,8 @@ export interface operations {
                     "application/json": components["schemas"]["Run"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_trace: {
@@ -12131,20 +17495,13 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.apache.parquet": string;
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_report: {
@@ -12165,18 +17522,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_thumbnail: {
@@ -12197,18 +17547,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_scenario: {
@@ -12229,18 +17572,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_run_script: {
@@ -12261,18 +17597,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sweeps: {
@@ -12306,15 +17635,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_sweep: {
@@ -12348,15 +17670,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_sweeps: {
@@ -12381,15 +17696,8 @@ export interface operations {
                     "application/json": components["schemas"]["Removed"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep: {
@@ -12413,15 +17721,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_sweep: {
@@ -12445,15 +17746,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     rename_sweep: {
@@ -12481,15 +17775,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_points: {
@@ -12526,15 +17813,8 @@ export interface operations {
                     "application/json": components["schemas"]["SweepPoints"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_distribution: {
@@ -12563,15 +17843,8 @@ export interface operations {
                     "application/json": components["schemas"]["Distribution"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_picture: {
@@ -12600,15 +17873,8 @@ export interface operations {
                     "application/json": components["schemas"]["CampaignPicture"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_runs: {
@@ -12636,19 +17902,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv; charset=utf-8": unknown;
-                    "application/vnd.apache.parquet": unknown;
+                    "text/csv": string;
+                    "application/vnd.apache.parquet": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_report: {
@@ -12669,18 +17928,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sweep_script: {
@@ -12701,18 +17953,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     find_threshold: {
@@ -12746,15 +17991,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_threshold: {
@@ -12778,15 +18016,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cancel_threshold: {
@@ -12810,15 +18041,8 @@ export interface operations {
                     "application/json": components["schemas"]["ThresholdRun"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     follow_run: {
@@ -12852,15 +18076,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     follow_sweep: {
@@ -12894,15 +18111,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     follow_threshold: {
@@ -12936,15 +18146,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     follow_recording: {
@@ -12978,15 +18181,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_gallery: {
@@ -13010,15 +18206,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_figure: {
@@ -13039,18 +18228,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "image/svg+xml": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     run_gallery: {
@@ -13075,15 +18257,8 @@ export interface operations {
                     "application/json": components["schemas"]["Gallery"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_benchmarks: {
@@ -13104,15 +18279,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_benchmark: {
@@ -13136,15 +18304,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchmarkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_real: {
@@ -13169,15 +18330,8 @@ export interface operations {
                     "application/json": components["schemas"]["PositiveRealReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_positive_definite: {
@@ -13202,15 +18356,8 @@ export interface operations {
                     "application/json": components["schemas"]["DefinitenessReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     judge_persistency: {
@@ -13235,15 +18382,8 @@ export interface operations {
                     "application/json": components["schemas"]["ExcitationReport"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_aliases: {
@@ -13268,15 +18408,8 @@ export interface operations {
                     "application/json": components["schemas"]["AliasMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     map_instability: {
@@ -13301,15 +18434,8 @@ export interface operations {
                     "application/json": components["schemas"]["InstabilityMap"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_links: {
@@ -13339,15 +18465,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_link: {
@@ -13372,15 +18491,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_link: {
@@ -13404,15 +18516,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_link: {
@@ -13434,15 +18539,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_link: {
@@ -13470,15 +18568,8 @@ export interface operations {
                     "application/json": components["schemas"]["LinkDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_link: {
@@ -13502,15 +18593,8 @@ export interface operations {
                     "application/json": components["schemas"]["Bench"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_lectures: {
@@ -13531,15 +18615,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_lecture: {
@@ -13563,15 +18640,8 @@ export interface operations {
                     "application/json": components["schemas"]["LectureDetail"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     put_cue: {
@@ -13601,15 +18671,8 @@ export interface operations {
                     "application/json": components["schemas"]["Staged"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_me: {
@@ -13630,15 +18693,8 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     raise_hand: {
@@ -13663,15 +18719,8 @@ export interface operations {
                     "application/json": components["schemas"]["Me"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_classes: {
@@ -13699,15 +18748,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClassList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_class: {
@@ -13732,15 +18774,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class: {
@@ -13764,15 +18799,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_class: {
@@ -13794,15 +18822,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_code: {
@@ -13830,15 +18851,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_code: {
@@ -13862,15 +18876,8 @@ export interface operations {
                     "application/json": components["schemas"]["Class"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     join_class: {
@@ -13898,15 +18905,8 @@ export interface operations {
                     "application/json": components["schemas"]["Joined"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_members: {
@@ -13934,18 +18934,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Members"];
+                    "application/json": components["schemas"]["MemberList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_member: {
@@ -13969,15 +18962,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     command_all: {
@@ -14005,15 +18991,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_scenario: {
@@ -14041,15 +19020,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     show_bench: {
@@ -14075,15 +19047,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_showing: {
@@ -14105,15 +19070,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_layout: {
@@ -14139,15 +19097,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_layout: {
@@ -14168,15 +19119,8 @@ export interface operations {
                     "application/json": components["schemas"]["GivenLayout"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     lower_hand: {
@@ -14200,15 +19144,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_all: {
@@ -14236,15 +19173,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     change_driver: {
@@ -14272,15 +19202,8 @@ export interface operations {
                     "application/json": components["schemas"]["Drives"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     draw_qr_code: {
@@ -14305,15 +19228,8 @@ export interface operations {
                     "application/json": components["schemas"]["QrCode"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_blind: {
@@ -14337,15 +19253,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_fault: {
@@ -14373,15 +19282,8 @@ export interface operations {
                     "application/json": components["schemas"]["Blindness"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     give_up: {
@@ -14405,15 +19307,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer: {
@@ -14441,15 +19336,8 @@ export interface operations {
                     "application/json": components["schemas"]["Answer"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_blind: {
@@ -14473,15 +19361,8 @@ export interface operations {
                     "application/json": components["schemas"]["BlindClass"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_for_class: {
@@ -14509,15 +19390,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_class: {
@@ -14541,15 +19415,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_captures: {
@@ -14573,15 +19440,8 @@ export interface operations {
                     "application/json": components["schemas"]["BenchCaptures"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_games: {
@@ -14602,15 +19462,8 @@ export interface operations {
                     "application/json": components["schemas"]["GameList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_game: {
@@ -14637,15 +19490,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_game: {
@@ -14673,15 +19519,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hand_in: {
@@ -14696,7 +19535,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["HandIn"];
+                "application/json": components["schemas"]["NewAttempt"];
             };
         };
         responses: {
@@ -14709,15 +19548,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_game: {
@@ -14745,15 +19577,8 @@ export interface operations {
                     "application/json": components["schemas"]["Play"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_game: {
@@ -14782,15 +19607,8 @@ export interface operations {
                     "application/json": components["schemas"]["ClassGame"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_votes: {
@@ -14818,15 +19636,8 @@ export interface operations {
                     "application/json": components["schemas"]["VoteList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_vote: {
@@ -14851,15 +19662,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_vote: {
@@ -14883,15 +19687,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     remove_vote: {
@@ -14913,15 +19710,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_vote: {
@@ -14945,15 +19735,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     reveal_vote: {
@@ -14977,15 +19760,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     count_hands: {
@@ -15013,15 +19789,8 @@ export interface operations {
                     "application/json": components["schemas"]["Vote"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     cast: {
@@ -15046,15 +19815,8 @@ export interface operations {
                     "application/json": components["schemas"]["OpenVote"] | null;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_watchers: {
@@ -15085,15 +19847,8 @@ export interface operations {
                     "application/json": components["schemas"]["WatcherList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     make_watcher: {
@@ -15121,15 +19876,8 @@ export interface operations {
                     "application/json": components["schemas"]["Watcher"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     end_watcher: {
@@ -15153,15 +19901,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     list_sheets: {
@@ -15189,15 +19930,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     open_sheet: {
@@ -15222,15 +19956,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_sheet: {
@@ -15254,15 +19981,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     delete_sheet: {
@@ -15284,15 +20004,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_sheet: {
@@ -15316,15 +20029,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     start_over: {
@@ -15346,15 +20052,8 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     answer_step: {
@@ -15384,15 +20083,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     hide_in_step: {
@@ -15418,15 +20110,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     take_hint: {
@@ -15452,15 +20137,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     close_step: {
@@ -15486,15 +20164,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     add_recording: {
@@ -15520,15 +20191,8 @@ export interface operations {
                     "application/json": components["schemas"]["SheetView"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report: {
@@ -15549,18 +20213,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     begin_for_all: {
@@ -15588,15 +20245,8 @@ export interface operations {
                     "application/json": components["schemas"]["Outcomes"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_grades: {
@@ -15620,19 +20270,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": unknown;
-                    "text/csv": unknown;
+                    "application/json": components["schemas"]["GradeList"];
+                    "text/csv": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_report_of: {
@@ -15657,18 +20300,11 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/html": unknown;
+                    "text/html": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_class_audit: {
@@ -15699,15 +20335,8 @@ export interface operations {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     get_bench_audit: {
@@ -15738,15 +20367,8 @@ export interface operations {
                     "application/json": components["schemas"]["AuditList"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     live: {
@@ -15776,15 +20398,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     ready: {
@@ -15814,15 +20429,8 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
     metrics: {
@@ -15843,15 +20451,8 @@ export interface operations {
                     "text/plain": string;
                 };
             };
-            /** @description Refused or failed */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["ErrorReply"];
-                };
-            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
         };
     };
 }

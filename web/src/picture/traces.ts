@@ -72,6 +72,36 @@ export function paintBand(
   pen.fill();
 }
 
+/** Heights of steps are rounded to a share of a pixel that no eye sees: equal neighbours are one step. */
+const STEPS_PER_PX = 4;
+
+/** Fill below steps, one for each column; a column without a value belongs to the step before it. */
+export function fillSteps(
+  pen: Pen,
+  values: Float32Array,
+  columnX: (column: number) => number,
+  base: number,
+  heightOf: (value: number) => number,
+): void {
+  // One outline: a rectangle for each column takes software that draws without a graphics card many times longer.
+  const right = columnX(values.length);
+  let y: number | undefined;
+  pen.beginPath();
+  values.forEach((value, c) => {
+    if (Number.isNaN(value)) return;
+    const next = base - Math.round(heightOf(value) * STEPS_PER_PX) / STEPS_PER_PX;
+    if (next === y) return;
+    if (y === undefined) pen.moveTo(columnX(c), base);
+    else pen.lineTo(columnX(c), y);
+    pen.lineTo(columnX(c), next);
+    y = next;
+  });
+  if (y === undefined) return;
+  pen.lineTo(right, y);
+  pen.lineTo(right, base);
+  pen.fill();
+}
+
 /** A dot at a point, px. */
 export function paintDot(pen: Pen, x: number, y: number, radius: number, colour: string): void {
   if (!Number.isFinite(x + y)) return;

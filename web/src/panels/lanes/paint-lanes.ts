@@ -2,7 +2,7 @@ import { paintColumns, timeAxis } from "../../picture/axes";
 import { eventAxis } from "../../picture/event-marks";
 import type { Box, Look, Pen } from "../../picture/pen";
 import { type Picture, pictureName } from "../../picture/picture";
-import { within } from "../../picture/traces";
+import { fillSteps, within } from "../../picture/traces";
 import { columnAt, largest, lowest } from "../../stream/panel-frame";
 import { formatPercent } from "../../ui/format";
 import { CANVAS, fontFor } from "../../ui/palette";
@@ -58,9 +58,7 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
         [lowest, "d9"],
       ] as const) {
         ctx.fillStyle = colour(i) + alpha;
-        ctx.beginPath();
-        fillSteps(ctx, part(frame, i), columnX, base, tall);
-        ctx.fill();
+        fillSteps(ctx, part(frame, i), columnX, base, (value) => Math.max(1, value * tall));
       }
       ctx.fillStyle = colours.axis;
       ctx.fillRect(layout.left, base, layout.right - layout.left, 1);
@@ -92,19 +90,6 @@ export function paintLanes(ctx: Pen, box: Box, shown: LanesShown, look: Look): v
   if (!shown.withTruth) return;
   ctx.fillText("truth", layout.left - 10, layout.truth + layout.band / 2);
   ctx.fillText("delay", layout.left - 10, layout.delay + layout.band / 2);
-}
-
-function fillSteps(ctx: Pen, values: Float32Array, columnX: (c: number) => number, base: number, tall: number): void {
-  let from = -1;
-  let height = 0;
-  for (let c = 0; c < values.length; c += 1) {
-    const value = values[c];
-    if (Number.isNaN(value)) continue;
-    if (from >= 0) ctx.rect(columnX(from), base - height, columnX(c) - columnX(from), height);
-    from = c;
-    height = Math.max(1, value * tall);
-  }
-  if (from >= 0) ctx.rect(columnX(from), base - height, columnX(values.length) - columnX(from), height);
 }
 
 /** The lanes of a diagnoser as a picture. */

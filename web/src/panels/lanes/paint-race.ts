@@ -1,6 +1,6 @@
 import { paintColumns, timeAxis } from "../../picture/axes";
 import type { Box, Look, Pen } from "../../picture/pen";
-import { within } from "../../picture/traces";
+import { fillSteps, within } from "../../picture/traces";
 import { largest, lowest } from "../../stream/panel-frame";
 import { CANVAS } from "../../ui/palette";
 import type { TruthSwitch } from "./delays";
@@ -44,9 +44,7 @@ export function paintRow(ctx: Pen, box: Box, shown: RaceShown, look: Look): void
   // the last layer is drawn first and fills down to the axis; each earlier layer covers the lower part
   for (let i = edges.length - 1; i >= 0; i -= 1) {
     ctx.fillStyle = colour(i);
-    ctx.beginPath();
-    fillBelow(ctx, edges[i], columnX, top, height);
-    ctx.fill();
+    fillSteps(ctx, edges[i], columnX, top + height, (edge) => Math.min(1, edge) * height);
   }
   const winner = lowest(frame, probabilities);
   paintBand(ctx, ground, winner, layout.winner, false, layout.band - 1);
@@ -74,18 +72,6 @@ export function paintTruth(ctx: Pen, box: Box, shown: RaceShown, look: Look, top
 }
 
 const middle = (low: Float32Array, high: Float32Array) => low.map((value, i) => 0.5 * (value + high[i]));
-
-function fillBelow(ctx: Pen, edge: Float32Array, columnX: (c: number) => number, top: number, height: number): void {
-  let from = -1;
-  for (let c = 0; c <= edge.length; c += 1) {
-    if (c < edge.length && Number.isNaN(edge[c])) continue;
-    if (from >= 0) {
-      const tall = Math.min(1, edge[from]) * height;
-      ctx.rect(columnX(from), top + height - tall, columnX(c) - columnX(from), tall);
-    }
-    from = c;
-  }
-}
 
 /** Upper edges of probabilities stacked on one another, column by column; together they fill the height. */
 export function stack(layers: readonly Float32Array[]): Float32Array[] {
