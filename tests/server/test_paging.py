@@ -33,8 +33,10 @@ WHOLE = {
     "list_benchmarks": OF_THE_PROGRAM,
     "list_lectures": OF_THE_PROGRAM,
     "list_games": OF_THE_PROGRAM,
+    "list_schemas": OF_THE_PROGRAM,
     "list_captures": "at most 16 triggers with 50 captures each, constants of the program",
     "get_class_blind": OF_A_CLASS,
+    "get_grades": OF_A_CLASS,
     "get_class_game": OF_A_CLASS,
     "get_game": OF_A_CLASS,
     **dict.fromkeys(

@@ -50,7 +50,8 @@ def test_a_data_folder_opens(revision: str, serve: Any, tmp_path: Path) -> None:
 
         (run,) = found("runs")["runs"]
         assert (run["state"], run["scenario_id"], run["summary"]["ticks"]) == ("done", "kept-live", 191)
-        assert live.http.get(f"/api/v1/runs/{run['id']}/scenario").text.startswith("schema = 1")
+        text = live.http.get(f"/api/v1/runs/{run['id']}/scenario").text
+        assert text.startswith("#:schema ./scenario.schema.json\nschema = 1\n"), text[:100]
         (recording,) = found("recordings")["recordings"]
         assert (recording["id"], recording["state"], recording["ticks"]) == (WHOLE, "done", 181)
         assert len(recording["signals"]) == 3
