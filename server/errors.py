@@ -24,7 +24,6 @@ from scenarios.arrow import pa
 
 log = logging.getLogger(__name__)
 
-"""Name in the query of an address that tells the proxy which of several processes it leads to."""
 LONGEST = 300
 """Characters of a message, a field or a hint: one line a person reads."""
 METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
