@@ -86,6 +86,7 @@ export const api = {
     (await data(client.GET("/api/v1/runs/{run_id}/scenario", { ...run(id), parseAs: "text" }))) as string,
   startRun: (body: NewRun) => data(client.POST("/api/v1/runs", { body })),
   cancelRun: (id: string) => data(client.DELETE("/api/v1/runs/{run_id}", run(id))),
+  sweep: (id: string) => data(client.GET("/api/v1/sweeps/{sweep_id}", sweep(id))),
   newestSweeps: (filter: RunFilter, most: number) =>
     rows("sweeps", (page) => client.GET("/api/v1/sweeps", { params: { query: { ...filter, ...page } } }), most),
   startSweep: (sweep: Campaign, label: string) => data(client.POST("/api/v1/sweeps", { body: { sweep, label } })),

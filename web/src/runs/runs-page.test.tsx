@@ -55,6 +55,22 @@ it("tells runs of a scenario apart by the values that each changes", async () =>
   expect(jobs.getByRole("button", { name: /^First look/ })).not.toHaveTextContent("severity");
 });
 
+const NONE = new Refusal(404, "there is none");
+
+it("shows a run of a link that is older than the rows of the list", async () => {
+  server.on("GET", "/runs/run-old", { ...run, id: "run-old", label: "an old run" });
+  server.on("GET", "/sweeps/run-old", NONE);
+  const { result } = await mountPage("&run=run-old");
+  expect(await result.findByRole("heading", { name: "an old run" })).toBeVisible();
+});
+
+it("says that a link leads to no run", async () => {
+  server.on("GET", "/runs/run-none", NONE);
+  server.on("GET", "/sweeps/run-none", NONE);
+  const { result } = await mountPage("&run=run-none");
+  expect(await result.findByText("There is no such run")).toBeVisible();
+});
+
 it("shows a run that is chosen: its figures with units, its digest and its files", async () => {
   const { user, jobs, result } = await mountPage();
   await user.click(jobs.getByRole("button", { name: /^quiet/ }));

@@ -3,7 +3,7 @@ import { useDebouncedValue } from "@mantine/hooks";
 import { useCallback, useEffect, useRef, useState } from "react";
 import { api } from "../api/api";
 import type { Rows } from "../api/client";
-import { useList } from "../api/queries";
+import { useAnswer, useList } from "../api/queries";
 import type { RunFilter } from "../api/types";
 import { PageHead } from "../bench/page-head";
 import { showError } from "../bench/send";
@@ -34,6 +34,16 @@ async function jobsLike(filter: RunFilter, most: number): Promise<Rows<Job>> {
   return { rows: jobs.slice(0, most), isWhole: runs.isWhole && sweeps.isWhole && jobs.length <= most };
 }
 
+/** A run or a campaign by its id: a link may lead to one that is older than the rows of the list. */
+async function jobOf(id: string): Promise<Job> {
+  const found = await Promise.allSettled([
+    api.run(id).then((run) => jobsOf([run], [])),
+    api.sweep(id).then((sweep) => jobsOf([], [sweep])),
+  ]);
+  for (const one of found) if (one.status === "fulfilled") return one.value[0];
+  throw (found[0] as PromiseRejectedResult).reason;
+}
+
 /** Headless runs and campaigns: start them, watch them, read their results. */
 export function RunsPage() {
   const [filter, setFilter] = useState(ALL);
@@ -49,7 +59,14 @@ export function RunsPage() {
     api.scenarios().then((found) => setScenarios(found.map((one) => one.id)), showError);
   }, []);
   const isFiltered = Object.values(filter).some(Boolean);
-  const job = value?.find((one) => one.id === chosen?.id);
+  const listed = value?.find((one) => one.id === chosen?.id);
+  const id = chosen?.kind === "comparison" ? undefined : chosen?.id;
+  const alone = useAnswer(
+    value && id && !listed ? ["job", id] : undefined,
+    () => jobOf(id ?? ""),
+    (found) => (found?.isActive ? BUSY_MS : undefined),
+  );
+  const job = listed ?? (alone.value?.id === id ? alone.value : undefined);
   const detail = useRef<HTMLElement>(null);
   // A result below the list scrolls into view when it is chosen.
   useEffect(() => {
@@ -112,7 +129,7 @@ export function RunsPage() {
         ) : job?.kind === "campaign" ? (
           <CampaignDetail key={job.id} sweep={job.sweep} onChanged={again} />
         ) : (
-          <EmptyState title={chosen && value ? "The list does not hold this run" : "No result chosen"}>
+          <EmptyState title={alone.error ? "There is no such run" : id ? "Asking the server" : "No result chosen"}>
             Choose a run or a campaign from the list: figures, expectations, reports and downloads appear here.
           </EmptyState>
         )}
