@@ -80,6 +80,10 @@ def _choices_of(layout: RecordLayout) -> list[int]:
     return found
 
 
+DERIVED = {name: fact.fget for name, fact in vars(Context).items() if isinstance(fact, property) and fact.fget}
+"""Facts that follow from others, which are the facts read."""
+
+
 class _Noting(Context):
     """The facts of a bench, with a note of each fact read; a unit that a document carries accepts only a `Context`."""
 
@@ -91,6 +95,8 @@ class _Noting(Context):
     def __getattribute__(self, name: str) -> Any:
         if name.startswith("_") or name == "read":
             return object.__getattribute__(self, name)
+        if name in DERIVED:
+            return DERIVED[name](self)
         self.read.add(name)
         return getattr(self._context, name)
 

@@ -10,6 +10,7 @@ import numpy as np
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Stage, parameter
 from core.control.controller import ControllerPorts, unsuited_second_order
 from core.control.nominal import Following, followed, following, over_sample
+from core.errors import InputError
 from core.kernel import flush_tiny
 from core.matrix import product, riccati, solved
 from core.ports import reads, tap
@@ -117,7 +118,10 @@ def gains(phi: FloatArray, seen: FloatArray, noise: FloatArray, measured: float,
         Variance R of the measurement.
     """
     # a little noise on both states, because a device that cannot be moved has no limit without it
-    prior = riccati(phi, seen, noise + np.eye(2) * 1e-18, np.array([[measured]]))
+    try:
+        prior = riccati(phi, seen, noise + np.eye(2) * 1e-18, np.array([[measured]]))
+    except InputError:  # the numbers of this device are too far apart: no feedback
+        return np.zeros(2)
     turned = product(phi, prior, seen.T) if shift else product(prior, seen.T)
     found: FloatArray = solved(product(seen, prior, seen.T) + measured, turned.T)[0]
     return found

@@ -105,17 +105,13 @@ class Resonant(Block):
             # 1/P of the sampled device, a quotient of two polynomials of z = c + js
             above, above_imaginary = (c - own.phi22) * own.push1 + own.phi12 * own.push2, s * own.push1
             below, below_imaginary = c * c - s * s - trace * c + determinant, 2.0 * c * s - trace * s
-            square = above * above + above_imaginary * above_imaginary
-            inverse, inverse_imaginary = (
-                (below * above + below_imaginary * above_imaginary) / square,
-                (below_imaginary * above - below * above_imaginary) / square,
-            )
+            inverse = _quotient(below, below_imaginary, above, above_imaginary)
+            response = _quotient(above, above_imaginary, below, below_imaginary)
             gain = (2.0 if tone > 0.0 else 1.0) * params.rate * decay
+            back = 2.0 * decay * context.dt_ms / gain
             p.turn_real[i], p.turn_imaginary[i] = c, s
-            p.weight_real[i], p.weight_imaginary[i] = gain * inverse, gain * inverse_imaginary
-            size = p.weight_real[i] * p.weight_real[i] + p.weight_imaginary[i] * p.weight_imaginary[i]
-            p.back_real[i] = 2.0 * decay * context.dt_ms * p.weight_real[i] / size
-            p.back_imaginary[i] = -2.0 * decay * context.dt_ms * p.weight_imaginary[i] / size
+            p.weight_real[i], p.weight_imaginary[i] = gain * inverse[0], gain * inverse[1]
+            p.back_real[i], p.back_imaginary[i] = back * response[0], back * response[1]
         return p
 
     @staticmethod
@@ -147,3 +143,12 @@ class Resonant(Block):
         x.voltage = s.voltage
         x.error = x.model - x.measured
         x.correction = correction
+
+
+def _quotient(above: float, above_imaginary: float, below: float, below_imaginary: float) -> tuple[float, float]:
+    """Return real and imaginary part of a quotient, 0 where it has no value: then the resonator has no effect."""
+    square = below * below + below_imaginary * below_imaginary
+    if square == 0.0:
+        return 0.0, 0.0
+    real = (above * below + above_imaginary * below_imaginary) / square
+    return real, (above_imaginary * below - above * below_imaginary) / square

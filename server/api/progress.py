@@ -57,8 +57,8 @@ def _door(result: str) -> dict[str, Any]:
             "id": {"type": "string", "description": "For the header Last-Event-ID"},
         },
     }
-    content = {"text/event-stream": {"schema": {"type": "string"}, "x-item-schema": event}}
     about = f"Events `progress` with a WorkProgress, then one of `done`, `failed` and `cancelled` with the {result}"
+    content = {"text/event-stream": {"schema": {"description": about}, "x-item-schema": event}}
     gone = {"description": "The last event is known already: there is nothing left to wait for"}
     return {
         "response_class": Response,

@@ -17,7 +17,7 @@ from scenarios.schema import Scenario
 
 TICKS = 800
 ALONE = (
-    "ch1-shock ch3-indirect-mrac-b30 ch3-mrac-noise ch3-optical-loop ch3-pull-in-map ch3-stvsc-estimate "
+    "ch1-shock ch3-baselines ch3-indirect-mrac-b30 ch3-mrac-noise ch3-optical-loop ch3-pull-in-map ch3-stvsc-estimate "
     "ch3-stvsc-pull-in ch3-vsc ch4-double-integrator-gains ch4-tracking-vsmrc ch5-light-two-devices "
     "ch6-drift ch6-phase-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
     "gyro-off-resonance gyro-small-rates"
@@ -106,6 +106,15 @@ def test_points_that_share_what_they_do_not_change(abreast):
     assert not abreast and len({entry.digest for entry in found}) == 8
     for one, (_, seed), ours in zip([one for one in documents for _ in range(2)], runs, found, strict=True):
         assert said(ours) == said(outcome(Scenario.load(copy.deepcopy(one)), seed))
+
+
+def test_points_of_which_each_has_another_sensor_noise(abreast):
+    """A bank assumes the noise of the sensor unless it is given: a fact that follows from another one."""
+    base = cut(get("ch5-seven-step"))
+    runs = [(with_values(base, {"sensor.noise_um": noise}), 1) for noise in (0.05, 0.1, 0.2)]
+    found = batch.outcomes(runs)
+    assert abreast == []
+    assert [said(one) for one in found] == [said(outcome(*run)) for run in runs]
 
 
 def test_a_run_that_trips_is_told_of_as_it_is_alone(abreast):

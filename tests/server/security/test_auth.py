@@ -16,6 +16,8 @@ OPEN = {
     ("GET", "/join"): (200, "the page that asks for the code of a class"),
     ("POST", "/join"): (403, "the code of a class opens it"),
     ("POST", "/api/v1/classes/class_id/join"): (422, "the same for programs"),
+    ("GET", "/api/v1/schemas"): (200, "editors have no token; the schemas tell only the fields of documents"),
+    ("GET", "/api/v1/schemas/name"): (404, "the same"),
     ("GET", "/watch/secret"): (403, "the link itself is the secret"),
     ("GET", "/watch"): (422, "a shared link, by which the teacher lets people watch"),
 }
