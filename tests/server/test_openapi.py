@@ -144,6 +144,9 @@ def test_files_are_text_or_bytes_and_everything_else_is_typed(document: dict[str
                     assert references(schema), (where, status)
                 elif media == "application/schema+json":
                     assert schema == {"type": "object"}, where
+                elif media == "text/event-stream":
+                    assert "type" not in schema, where  # readers take it for the schema of each event
+                    assert references(content["x-item-schema"]), where
                 else:
                     assert schema == (TEXT if media.startswith("text/") else BINARY), (where, media)
 
