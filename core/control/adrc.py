@@ -88,7 +88,7 @@ class Adrc(Block):
         p.observer = observer_of(known, context, params.observer_bandwidth * rate)
         if device.force == 0.0:
             return p  # nothing moves this device
-        p.following = following(replace(context, device=known))
+        p.following = following(known, context.model)
         bandwidth, of_acceleration = params.controller_bandwidth * rate, device.mass / device.force
         p.by_disturbance = of_acceleration
         p.by_error, p.by_velocity_error = bandwidth * bandwidth * of_acceleration, 2.0 * bandwidth * of_acceleration

@@ -78,7 +78,7 @@ class Lqg(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the device, and the gains of both Riccati equations."""
         p = cls.Packed.blank()
-        p.device, p.following = over_sample(context.device, context), following(context)
+        p.device, p.following = over_sample(context.device, context), following(context.device, context.model)
         phi = np.array([[p.device.phi11, p.device.phi12], [p.device.phi21, p.device.phi22]])
         push, seen = np.array([[p.device.push1], [p.device.push2]]), np.array([[1.0, 0.0]])
         p.regulate[:] = gains(phi.T, push.T, product(seen.T, seen), params.voltage_cost_um_v**2, shift=True)

@@ -31,9 +31,8 @@ def over_sample(device: Oscillator, context: Context) -> Tick:
     return tick
 
 
-def following(context: Context) -> Following:
-    """Return the weights of the voltage under which the nominal device moves as the model; 0 without any force."""
-    device, model = context.device, context.model
+def following(device: Oscillator, model: Oscillator) -> Following:
+    """Return the weights of the voltage under which a device moves as the model; 0 without any force."""
     found, share = Following.zeros(), device.mass / model.mass
     if device.force != 0.0:
         found.reference = share * model.force / device.force

@@ -95,7 +95,7 @@ class Resonant(Block):
         p.dt_ms = context.dt_ms
         if device.force == 0.0:
             return p  # nothing moves this device
-        p.following = following(context)
+        p.following = following(context.device, context.model)
         decay = max(0.5 * device.damping / device.mass, 1e-3 * device.natural_frequency)
         own = over_sample(device, context)
         trace, determinant = own.phi11 + own.phi22, own.phi11 * own.phi22 - own.phi12 * own.phi21
