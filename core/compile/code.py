@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -128,16 +128,21 @@ def instructions(block: Block, width: int, *, lanes: bool) -> str:
     Unsupported
         When the step says something that is not known.
     """
+    return str(module_of(block, width, lanes=lanes))
+
+
+def module_of(block: Block, width: int, *, lanes: bool) -> ir.Module:
+    """Return the module with the instructions of a step."""
     return settled(lambda kinds: _written(block, kinds, width, lanes=lanes))
 
 
-def settled(write: Callable[[Kinds], tuple[ir.Module, bool]]) -> str:
-    """Return instructions, written again and again until the kinds of all variables are known."""
+def settled(write: Callable[[Kinds], tuple[ir.Module, bool]]) -> ir.Module:
+    """Return a module whose instructions are written again and again until the kinds of all variables are known."""
     kinds: Kinds = {}
     for _ in range(MOST_PASSES):
         module, is_complete = write(kinds)
         if is_complete:
-            return str(module)
+            return module
     raise Unsupported("variables whose kinds never settle")
 
 
@@ -146,24 +151,28 @@ def _written(block: Block, kinds: Kinds, width: int, *, lanes: bool) -> tuple[ir
     module, builder, (p, s, w, io) = begun([POINTER, POINTER, POINTER, PLACES])
     start = builder.append_basic_block("start")
     translation = Translation(builder, kinds, width, lanes=lanes)
-    ports = {port.name: (i, seen(port)) for i, port in enumerate(block.Ports.declared)}
-
-    def board(p: Any, s: Any, w: Any) -> None:
-        records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
-        translation.call(block.step, (*records, PortsView(w, io, ports)))
-
     with builder.goto_block(start):
         if lanes or width == 1:
-            board(p, s, w)
+            call_step(translation, block, p, s, w, io)
         else:
             with counted(builder, ir.Constant(I64, width)) as k:  # one board after another
-                board(*(builder.gep(base, [k]) for base in (p, s, w)))
+                own = builder.gep(p, [k]), builder.gep(s, [k]), builder.gep(w, [k])
+                call_step(translation, block, *own, io)
         builder.ret_void()
     builder.branch(start)
     return module, translation.is_complete
 
 
-def seen(port: Any) -> Any:
+def call_step(
+    translation: Translation, block: Block, p: Any, s: Any, w: Any, io: Any, known: Mapping[int, int] | None = None
+) -> None:
+    """Write the instructions of a step behind these pointers; ``known`` has the constant places of signals."""
+    records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
+    ports = {port.name: (i, _seen(port)) for i, port in enumerate(block.Ports.declared)}
+    translation.call(block.step, (*records, PortsView(w, io, ports, known or {})))
+
+
+def _seen(port: Any) -> Any:
     """Return how a step sees the signal behind a port: as a number, a vector, or records of a layout."""
     return port.record.layout if port.record else port.vector
 
@@ -179,7 +188,7 @@ def begun(kinds: list[Any]) -> tuple[ir.Module, ir.IRBuilder, tuple[Any, ...]]:
 
 def hash_of(block: Block, *others: Any, content: Content = bytecode) -> str:
     """Return a hash of a step, its records and ports, this compiler, and the other arguments."""
-    ports = [(port.name, seen(port)) for port in block.Ports.declared]
+    ports = [(port.name, _seen(port)) for port in block.Ports.declared]
     return digest(key(block.step, content), block.Packed.layout, block.State.layout, ports, compiler(), others)
 
 

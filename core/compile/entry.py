@@ -128,7 +128,7 @@ def piece(function: FunctionType, kinds: Kinds) -> Piece:
 
 def instructions(function: FunctionType, kinds: Kinds) -> str:
     """Return the instructions of a function for arguments of some kinds."""
-    return settled(lambda known: _written(function, kinds, known))
+    return str(settled(lambda known: _written(function, kinds, known)))
 
 
 def _written(function: FunctionType, kinds: Kinds, known: Any) -> tuple[ir.Module, bool]:

@@ -16,11 +16,10 @@ from typing import Any
 
 from llvmlite import ir
 
-from core.compile.code import PLACES, POINTER, Block, Piece, begun, digest, hash_of, seen, settled
+from core.compile.code import PLACES, POINTER, Block, Piece, begun, call_step, digest, hash_of, settled
 from core.compile.frames import Kinds
 from core.compile.machine import native
 from core.compile.numbers import I64
-from core.compile.places import PortsView, RecordView
 from core.compile.translate import Translation
 from core.kernel_cache import Content, get
 from core.ports import TICK
@@ -76,7 +75,7 @@ def kept_code_of(segment: Segment) -> bytes | None:
 def instructions(segment: Segment) -> str:
     """Return the instructions of a segment."""
     kinds: list[Kinds] = [{} for _ in segment]
-    return settled(lambda _: _written(segment, kinds))
+    return str(settled(lambda _: _written(segment, kinds)))
 
 
 def _written(segment: Segment, kinds: Iterable[Kinds]) -> tuple[ir.Module, bool]:
@@ -101,13 +100,9 @@ def _written(segment: Segment, kinds: Iterable[Kinds]) -> tuple[ir.Module, bool]
 
 def _call(translation: Translation, step: SegmentStep, arrays: tuple[Any, ...]) -> None:
     """Write the instructions of a step."""
-    build, (p, s, w, io), block = translation.builder, arrays, step.block
-    records = (
-        RecordView(_at(build, p, step.p), None, block.Packed.layout),
-        RecordView(_at(build, s, step.s), None, block.State.layout),
-    )
-    ports = {port.name: (i, seen(port)) for i, port in enumerate(block.Ports.declared)}
-    translation.call(block.step, (*records, PortsView(w, _at(build, io, step.io), ports, dict(step.ports))))
+    build, (p, s, w, io) = translation.builder, arrays
+    own = _at(build, p, step.p), _at(build, s, step.s), w, _at(build, io, step.io)
+    call_step(translation, step.block, *own, dict(step.ports))
 
 
 def _at(builder: ir.IRBuilder, base: Any, place: int) -> Any:

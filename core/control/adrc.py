@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
-from core.control.controller import ControllerPorts, unsuited_second_order
-from core.control.nominal import Following, followed, following
+from core.control.controller import unsuited_second_order
+from core.control.nominal import Following, FollowingPorts, followed, following
 from core.control.observer import Observed, StateObserver, observe, observer_of
-from core.ports import reads, tap
+from core.ports import tap
 from core.record import Record
 from core.voltage import moves
 
@@ -66,10 +66,9 @@ class Adrc(Block):
 
         observed: Observed
 
-    class Ports(ControllerPorts):
+    class Ports(FollowingPorts):
         """Ports of a controller, the velocity of the model, and the estimates."""
 
-        model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
         estimate: float = tap("um", "estimated displacement")
         velocity: float = tap("um/ms", "estimated velocity")
         disturbance: float = tap("um/ms^2", "estimated acceleration that the model does not explain")
@@ -105,7 +104,7 @@ class Adrc(Block):
         velocity = s.observed.motion.v
         error = x.model - estimate
         velocity_error = x.model_velocity - velocity
-        wanted = followed(p.following, x.reference, x.model, x.model_velocity)
+        wanted = followed(p.following, x)
         wanted += (p.by_error - p.by_displacement) * error + (p.by_velocity_error - p.by_velocity) * velocity_error
         x.voltage = wanted - p.by_disturbance * s.observed.acceleration
         x.estimate = estimate

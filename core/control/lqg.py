@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Stage, parameter
-from core.control.controller import ControllerPorts, unsuited_second_order
-from core.control.nominal import Following, followed, following, over_sample
+from core.control.controller import unsuited_second_order
+from core.control.nominal import Following, FollowingPorts, followed, following, over_sample
 from core.errors import InputError
 from core.kernel import flush_tiny
 from core.matrix import product, riccati, solved
-from core.ports import reads, tap
+from core.ports import tap
 from core.record import Record, Vector, vector
 from core.voltage import Motion, Tick, add_moves, advance_motion, moves
 
@@ -62,10 +62,9 @@ class Lqg(Block):
 
         estimate: Motion
 
-    class Ports(ControllerPorts):
+    class Ports(FollowingPorts):
         """Ports of a controller, the velocity of the model, and the estimates."""
 
-        model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
         estimate: float = tap("um", "estimated displacement")
         velocity: float = tap("um/ms", "estimated velocity")
 
@@ -96,7 +95,7 @@ class Lqg(Block):
         if math.isfinite(missed):
             s.estimate.x = flush_tiny(s.estimate.x + p.correct[0] * missed)
             s.estimate.v = flush_tiny(s.estimate.v + p.correct[1] * missed)
-        wanted = followed(p.following, x.reference, x.model, x.model_velocity)
+        wanted = followed(p.following, x)
         behind = p.regulate[0] * (s.estimate.x - x.model) + p.regulate[1] * (s.estimate.v - x.model_velocity)
         x.voltage = wanted - behind
         x.estimate = s.estimate.x

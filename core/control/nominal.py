@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from core.block import Context, Oscillator
+from core.control.controller import ControllerPorts
 from core.device.oscillator import held, within
 from core.kernel import kernel
+from core.ports import reads
 from core.record import Record
 from core.voltage import Tick
+
+
+class FollowingPorts(ControllerPorts):
+    """Ports of a controller that moves the device as the model moves, by the voltage of `followed`."""
+
+    model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
 
 
 class Following(Record):
@@ -42,6 +50,6 @@ def following(device: Oscillator, model: Oscillator) -> Following:
 
 
 @kernel
-def followed(p: Following, reference: float, displacement: float, velocity: float) -> float:
+def followed(p: Following, x: FollowingPorts) -> float:
     """Return the voltage under which the nominal device moves as the model."""
-    return p.reference * reference + p.velocity * velocity + p.displacement * displacement
+    return p.reference * x.reference + p.velocity * x.model_velocity + p.displacement * x.model

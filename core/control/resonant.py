@@ -6,11 +6,11 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
-from core.control.controller import ControllerPorts, unsuited_second_order
-from core.control.nominal import Following, followed, following, over_sample
+from core.control.controller import unsuited_second_order
+from core.control.nominal import Following, FollowingPorts, followed, following, over_sample
 from core.elementary import cos, sin
 from core.kernel import flush_tiny
-from core.ports import reads, tap
+from core.ports import tap
 from core.record import Choice, Record, Vector, vector
 
 MOST = 8
@@ -75,10 +75,9 @@ class Resonant(Block):
         real: Vector = vector(MOST)
         imaginary: Vector = vector(MOST)
 
-    class Ports(ControllerPorts):
+    class Ports(FollowingPorts):
         """Ports of a controller, the velocity of the model, the error, and the part of the resonators."""
 
-        model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
         error: float = tap("um", "model minus measured displacement")
         correction: float = tap("V", "voltage of the resonators")
 
@@ -121,6 +120,7 @@ class Resonant(Block):
         While another law drives, all resonators are zero.
         """
         e = x.model - x.measured
+        x.error = e
         missed = s.voltage - x.applied if s.drove != 0.0 else 0.0
         s.drove = x.engaged
         if not math.isfinite(e):
@@ -139,9 +139,8 @@ class Resonant(Block):
             s.imaginary[i] = flush_tiny(p.turn_imaginary[i] * real + p.turn_real[i] * imaginary)
             s.real[i] = flush_tiny(turned + p.dt_ms * e)
             correction += p.weight_real[i] * s.real[i] - p.weight_imaginary[i] * s.imaginary[i]
-        s.voltage = followed(p.following, x.reference, x.model, x.model_velocity) + correction
+        s.voltage = followed(p.following, x) + correction
         x.voltage = s.voltage
-        x.error = x.model - x.measured
         x.correction = correction
 
 

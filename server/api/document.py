@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 
 from scenarios.json_schema.components import COMPONENT
 from scenarios.json_schema.components import components as documents
-from scenarios.json_schema.definitions import walked
+from scenarios.json_schema.definitions import OURS, walked
 from server.api.examples import EXAMPLES
 from server.api.paging import LINK
 from server.api.tags import TAGS
@@ -65,8 +65,6 @@ PARAMETERS = {
 REFUSALS = {"4XX": ("Refused", "The request is refused"), "5XX": ("Failed", "The server cannot answer")}
 """Answers of every operation beside its own: the name and the description of each, by their status."""
 TEXT, BINARY = {"type": "string"}, {"type": "string", "format": "binary"}
-OWN = ("equation", "live", "unit")
-"""Keywords of our own in schemas of parameters; OpenAPI has them with a prefix."""
 
 
 def install(app: FastAPI) -> None:
@@ -147,7 +145,7 @@ def _standard(schema: Any) -> Any:
     """Return a schema with the keywords of our own by names that OpenAPI permits."""
     if not isinstance(schema, dict):
         return schema
-    found = {f"x-{key}" if key in OWN else key: value for key, value in schema.items()}
+    found = {f"x-{key}" if key in OURS else key: value for key, value in schema.items()}
     if "properties" in found:
         found["properties"] = {name: _standard(one) for name, one in found["properties"].items()}
     return found

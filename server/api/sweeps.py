@@ -132,7 +132,7 @@ async def get_sweep_points(
         order = survey.order(sort, descending=descending)
         first = offset + (survey.place_after(order, page.after[0]) if page.after else 0)
         is_page = page.limit != MOST_POINTS or page.after or sort or offset
-        rows = order[first:].tolist() if is_page else list(range(survey.points))
+        rows = order[first : first + (page.limit or MOST_POINTS) + 1].tolist() if is_page else range(survey.points)
         chosen = page.rows(rows, lambda number: (number,))
         about = {"found": len(order), "quantities": survey.quantities, "figures": survey.figures}
         about["words"] = diagnosis_words(survey.sweep.base.spec.diagnosers)

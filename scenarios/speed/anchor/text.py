@@ -15,8 +15,6 @@ from core.board import fold, history, program
 from core.board.board import Board
 from core.board.wiring import Wiring
 from core.compile import code
-from core.compile.places import PortsView, RecordView
-from core.compile.translate import Translation
 from core.ports import RESERVED, TICK, TIME_MS
 from scenarios.speed.anchor.known import known
 from scenarios.speed.anchor.writer import HEAD, Writer
@@ -93,23 +91,4 @@ def _constants(wiring: Wiring) -> dict[str, Any]:
 
 def translated(block: Any) -> ir.Module:
     """Return the instructions of a step for one board, as they are before any optimisation."""
-    modules: list[ir.Module] = []
-
-    def write(kinds: Any) -> tuple[ir.Module, bool]:
-        module, builder, (p, s, w, io) = code.begun([code.POINTER, code.POINTER, code.POINTER, code.PLACES])
-        start = builder.append_basic_block("start")
-        translation = Translation(builder, kinds, 1, lanes=False)
-        seen = {
-            port.name: (i, port.record.layout if port.record else port.vector)
-            for i, port in enumerate(block.Ports.declared)
-        }
-        with builder.goto_block(start):
-            records = RecordView(p, None, block.Packed.layout), RecordView(s, None, block.State.layout)
-            translation.call(block.step, (*records, PortsView(w, io, seen)))
-            builder.ret_void()
-        builder.branch(start)
-        modules.append(module)
-        return module, translation.is_complete
-
-    code.settled(write)
-    return modules[-1]
+    return code.module_of(block, 1, lanes=False)

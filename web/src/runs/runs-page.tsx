@@ -34,15 +34,12 @@ async function jobsLike(filter: RunFilter, most: number): Promise<Rows<Job>> {
   return { rows: jobs.slice(0, most), isWhole: runs.isWhole && sweeps.isWhole && jobs.length <= most };
 }
 
-/** A run or a campaign by its id: a link may lead to one that is older than the rows of the list. */
-async function jobOf(id: string): Promise<Job> {
-  const found = await Promise.allSettled([
-    api.run(id).then((run) => jobsOf([run], [])),
-    api.sweep(id).then((sweep) => jobsOf([], [sweep])),
-  ]);
-  for (const one of found) if (one.status === "fulfilled") return one.value[0];
-  throw (found[0] as PromiseRejectedResult).reason;
-}
+/** A run or a campaign by its id: a link may lead to a result that is older than the rows of the list. */
+const jobOf = (id: string): Promise<Job> =>
+  api.run(id).then(
+    (run) => jobsOf([run], [])[0],
+    async () => jobsOf([], [await api.sweep(id)])[0],
+  );
 
 /** Headless runs and campaigns: start them, watch them, read their results. */
 export function RunsPage() {
