@@ -217,6 +217,10 @@ class Block:
     generators: ClassVar[dict[str, str]] = {}
     """The inputs of a plant with axes besides its forces, and the family of each."""
     usual_sensor: ClassVar[str] = "ideal"
+    takes: ClassVar[dict[str, tuple[str, ...]]] = {}
+    """Of a plant: the only blocks of a family that go with it."""
+    plants: ClassVar[tuple[str, ...]] = ()
+    """The only plants that a block goes with, none for any."""
     lengths: ClassVar[tuple[str, ...]] = ()
     """Parameters that set the length of the tail of ``State``; none of them may change while the board runs."""
     apart: ClassVar[bool] = False

@@ -28,6 +28,7 @@ from core.board.wiring import Wiring, wire
 from core.diagnose.hypothesis import names_of
 from core.errors import InputError
 from core.loop import score
+from core.plant.record import supply
 from core.signals import SignalTable
 
 CHUNK = 512
@@ -134,8 +135,10 @@ class Board:
         return fold.digest(self.folds, ["" if block in aside else block for block in self.wiring.signals.output_blocks])
 
     def scores(self) -> dict[str, score.Scores]:
-        """Return the score of every diagnoser that chooses between hypotheses."""
-        found = {}
+        """Return the score of every diagnoser that chooses between hypotheses; none on a record without labels."""
+        found: dict[str, score.Scores] = {}
+        if self.spec.record is not None and self.spec.record.label is None:
+            return found
         for name, section in self.spec.diagnosers.items():
             if not scored(section.block):
                 continue
@@ -152,7 +155,7 @@ class Board:
         Pending commands take effect at the edges of the ticks they wait for, whatever the chunks. A block that has lost
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
-        n = min(n, CHUNK)
+        n = min(n, CHUNK, self._left)
         if any(segment.address for segment in self._awaited):
             self._join()
         first, done = self.tick, 0
@@ -181,9 +184,25 @@ class Board:
                 self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
         return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
 
+    @property
+    def _left(self) -> int:
+        """Ticks that the plant can still play; at the end of a record the board trips."""
+        record = self.spec.record
+        if record is None:
+            return CHUNK
+        if self.tick >= record.samples and self.trip is None:
+            self._trip("the record has ended")
+        return record.samples - self.tick
+
+    def _supply(self, n: int) -> None:
+        """Give the plant the samples of the next ticks, where it is a record."""
+        if self.spec.record is not None:
+            supply(self.wiring.state_of("plant"), self.spec.record, self.tick, n)
+
     def _run(self, n: int, at: int) -> tuple[int, int]:
         """Run ticks without a command between them; return how many ran, and why the loop stopped."""
         wiring = self.wiring
+        self._supply(n)
         before = wiring.s.copy(), wiring.w.copy()
         ran, why = self._loop(n, self.tick, self._outputs[at:], self._taps[at:], self.folds)
         if not lost(wiring, self.spec):

@@ -20,6 +20,10 @@ MOST_GROWTH = 100.0
 def misfit(block: type[Block], plant: type[Block]) -> str:
     """Say why a block does not go with a plant; nothing when it does."""
     axes = plant.axes or ()
+    if block.plants and plant.name not in block.plants:
+        return f"is for {' and '.join(block.plants)} only; the plant is {plant.name}"
+    if block.name not in (only := plant.takes.get(block.family, (block.name,))):
+        return f"cannot act on a {plant.name}, which takes {', '.join(only) or f'no {block.family}'}"
     if block.fits(axes):
         return ""
     moves = f"{plant.name} moves along {', '.join(axes)}" if axes else f"{plant.name} has one displacement"
@@ -113,6 +117,6 @@ def _for(pair: tuple[Oscillator, Oscillator], plant: type[Block], sections: dict
     left = {
         name: section
         for name, section in sections.items()
-        if section.block.fits(plant.axes or ()) and not section.block.unsuited(*pair)
+        if not misfit(section.block, plant) and not section.block.unsuited(*pair)
     }
     return sections if len(left) == len(sections) else left

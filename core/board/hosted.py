@@ -124,6 +124,7 @@ class Hosted(Board):
         if self._begun == tick:
             return
         self._begun, first = tick, 0
+        self._supply(1)
         for one in self._asked:
             self._walk(first, one.cut, tick)
             first = one.cut

@@ -16,6 +16,7 @@ from core.loop.axis_measurement import AxisMeasurement
 from core.loop.effects import Effects
 from core.loop.estimate_score import EstimateScore
 from core.loop.measurement import Measurement
+from core.loop.record_score import RecordScore
 from core.loop.score import Score
 
 
@@ -147,5 +148,8 @@ def scored(block: type[Block]) -> bool:
 def _scoring(spec: Spec, name: str, section: Section) -> Instance:
     """Return the score of a diagnoser; for a plant with axes it counts the parts that may change along them."""
     block: Any = AxesScore if section.block.axes else Score
-    params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses)
+    labels: dict[str, Any] = {}
+    if spec.record is not None:
+        block, labels = RecordScore, {"labels": tuple(spec.record.hypotheses)}
+    params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses, **labels)
     return Instance(f"{name}.score", name, block, params, spec.turns(section))

@@ -34,6 +34,9 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.guard import Guard
 from core.loop.model import Model
+from core.loop.record_drive import RecordDrive
+from core.loop.record_guard import RecordGuard
+from core.plant.record import RecordPlant
 from core.plant.shuttle import ShuttleParams
 from core.registry import apart
 from core.signals import CLOCK
@@ -169,7 +172,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         reference=before.reference if before is not None and same("reference") else _reference(library, doc),
         model=alone("model", Model),
         drive=drive,
-        guard=alone("guard", AxisGuard if axes else Guard),
+        guard=alone("guard", AxisGuard if axes else RecordGuard if plant.block is RecordPlant else Guard),
         measuring=_measuring(library, doc["sensor"]["kind"]),
         sensors=all_of("sensors", "sense"),
         driving=driving(doc, plant.block),
@@ -181,7 +184,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         vars(spec)["nominal"] = before.nominal
     if before is None or [(key, name) for key in CHOSEN for name in getattr(before, key)] != named:
         _named_apart(spec)
-    return suited(spec)
+    return _recorded(suited(spec))
 
 
 def _refuse_apart(spec: Spec) -> None:
@@ -211,8 +214,17 @@ def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, S
     if "model" not in plant:
         doc["plant"] = {**doc["plant"], "model": device.usual_plant}
     section = _section(library, "plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
-    stage = AxisDrive if section.block.axes else Drive
+    stage = AxisDrive if section.block.axes else RecordDrive if section.block is RecordPlant else Drive
     return section, Section(stage, _params(stage, drive, "drive"))
+
+
+def _recorded(spec: Spec) -> Spec:
+    """Refuse a rate that is not the rate of the record, where the plant is one."""
+    record = spec.record
+    if record is not None and record.rate_khz != spec.frame.sample_rate_khz:
+        text = f"is {short(spec.frame.sample_rate_khz)}, but the record has {record.rate_khz!r} samples for each ms"
+        raise InputError(text, "sample_rate_khz", f"sample_rate_khz = {record.rate_khz!r}")
+    return spec
 
 
 def _fitted(device: Device, plant: Section) -> Device:

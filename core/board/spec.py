@@ -20,6 +20,8 @@ from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
+from core.measured_record import MeasuredRecord, record_of
+from core.plant.record import RecordPlant
 from core.table import Table
 
 ALONE = ("environment", "plant", "reference", "model", "drive", "guard")
@@ -115,6 +117,12 @@ class Spec:
     def active(self) -> str:
         """The controller that drives in the last slot."""
         return list(self.driving.values())[-1]
+
+    @cached_property
+    def record(self) -> MeasuredRecord | None:
+        """The record that the plant plays, if it is one."""
+        params = self.plant.params
+        return record_of(params.record, "plant.record") if isinstance(params, RecordPlant.Params) else None
 
     @property
     def is_analogue(self) -> bool:

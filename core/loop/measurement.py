@@ -20,6 +20,7 @@ class ChosenPorts(BlockPorts):
     offset: float = reads("effects.sensor_offset", "um", "added to the measurement")
     quantum: float = reads("effects.sensor_quantum", "um", "rounding step of the measurement")
     held: float = reads("effects.sensor_held", "1", "not zero while the sample is lost")
+    missing: float = reads("plant.missing?", "1", "not zero where a record lacks the sample")
 
 
 class Measurement(Block):
@@ -62,7 +63,7 @@ class Measurement(Block):
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
         """Pass on the displacement of the sensor in use, unless the sample was lost."""
-        if x.held != 0.0:
+        if x.held != 0.0 or x.missing != 0.0:
             note(x.past, x, 0.0, 0.0)
         else:
             z = x.chosen

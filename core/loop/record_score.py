@@ -1,0 +1,80 @@
+"""Score of a diagnoser on a record: the truth is in the labels of the record, if it has any."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from core.block import Block, Context
+from core.diagnose.hypothesis import BankParams, names_of
+from core.loop.score import Score, ScoreTiming, count, nothing_counted, take_turns
+from core.ports import BlockPorts, output, reads, tap
+from core.record import Vector, tail
+
+
+class LabelledModels(BankParams):
+    """The hypotheses of a bank, and the names of the labels of a record."""
+
+    labels: tuple[str, ...] = ()
+
+
+class RecordScore(Block):
+    """Scores a bank by the rules of any score, at the samples of a record that have a label.
+
+    A label that no hypothesis has is a truth that is never found. Without any label there are only verdicts: share,
+    switches and delay are no numbers.
+    """
+
+    title = "Score on a record"
+    lengths = ("hypotheses",)
+    Params = LabelledModels
+    State = Score.State
+
+    class Packed(ScoreTiming):
+        """In addition the hypothesis of every label, -1 for none."""
+
+        hypothesis: Vector = tail()
+
+    class Ports(BlockPorts):
+        """Probabilities of the bank and the label in, the verdict out."""
+
+        probability: Vector = reads("", "1", "probabilities of the bank")
+        nis: Vector = reads("", "1", "normalised residuals of the bank")
+        label: float = reads("plant.label", "1", "index of the label, -1 for none")
+        winner: float = output("1", "index of the most probable hypothesis, -1 when probabilities are no numbers")
+        truth: float = output("1", "index of the hypothesis that is true by the labels, -1 for none")
+        correct_fraction: float = tap("1", "share of labelled samples with the right winner")
+        false_switches: float = tap("1", "exits from the truth after it was found")
+        delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
+        least_nis: float = tap("1", "average normalised residual squared of what fits best; 1 where it is true")
+        unexplained: float = tap("1", "1 while no hypothesis fits: even the least is too large for chance")
+
+    @classmethod
+    def pack(cls, params: Any, context: Context) -> Packed:
+        """Pack the ticks between two verdicts and the hypothesis of every label."""
+        names = names_of(params)
+        p = cls.Packed.blank(len(params.labels))
+        take_turns(p, len(names), context)
+        p.hypothesis[:] = [names.index(label) if label in names else -1 for label in params.labels]
+        return p
+
+    @classmethod
+    def state(cls, params: Any, context: Context) -> Score.State:  # noqa: ARG003 (the same on every bench)
+        """Nothing counted."""
+        return nothing_counted(len(params.hypotheses))
+
+    @staticmethod
+    def step(p: Packed, s: Score.State, x: Ports) -> None:
+        """Name the winner, and count where there is a label."""
+        label = int(x.label)
+        truth = int(p.hypothesis[label]) if label >= 0 else -1
+        total = s.total
+        count(p, s, x, int(p.count), truth)
+        if label < 0:
+            s.total = total
+        if s.total > 0.0:
+            x.correct_fraction = s.right / s.total
+        else:
+            x.correct_fraction = math.nan
+            x.false_switches = math.nan
+            x.delay = math.nan
