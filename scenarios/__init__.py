@@ -1,5 +1,7 @@
-"""Scenarios, runs and reports. Importing this first gives compiled kernels their cache."""
+"""Scenarios, runs and reports. Importing this first gives compiled kernels their cache, and benches their records."""
 
-from scenarios.kernel_cache import prepare
+from scenarios import kernel_cache
+from scenarios.records import shelf
 
-prepare()
+kernel_cache.prepare()
+shelf.prepare()

@@ -109,6 +109,9 @@ class Scenario:
         self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
+        if self.spec.record is not None and (self.samples or 0) > self.spec.record.samples:
+            field = "samples" if self.head.samples is not None else "duration_ms"
+            raise InputError(f"is {self.samples} samples, the record has {self.spec.record.samples}", field)
         if (beside := self.head.metrics.beside) and beside not in self.spec.diagnosers:
             raise unknown("diagnoser", beside, self.spec.diagnosers, "metrics.beside")
         self.twins = twin_specs(self.bench)
@@ -172,6 +175,8 @@ class Scenario:
         """Length in ticks, or None if it has no end."""
         if self.head.duration_ms is not None:
             return max(1, round(self.head.duration_ms / self.spec.dt_ms))
+        if self.head.samples is None and self.spec.record is not None:
+            return self.spec.record.samples
         return self.head.samples
 
     @property

@@ -197,7 +197,7 @@ class Board:
     def _supply(self, n: int) -> None:
         """Give the plant the samples of the next ticks, where it is a record."""
         if self.spec.record is not None:
-            supply(self.wiring.state_of("plant"), self.spec.record, self.tick, n)
+            supply(self.wiring.state_of("plant"), self.spec.plant.params, self.spec.record, self.tick, n)
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         """Run ticks without a command between them; return how many ran, and why the loop stopped."""

@@ -28,7 +28,7 @@ class RecordDrive(Drive):
         saturated: float = tap("1", "0: nothing asks a record for voltage")
 
     @classmethod
-    def pack(cls, params: Any, context: Context) -> Record:  # noqa: ARG003 (nothing to pack)
+    def pack(cls, params: Any, context: Context) -> Record:
         """Return no numbers."""
         return cls.Packed.blank()
 

@@ -59,7 +59,7 @@ class RecordScore(Block):
         return p
 
     @classmethod
-    def state(cls, params: Any, context: Context) -> Score.State:  # noqa: ARG003 (the same on every bench)
+    def state(cls, params: Any, context: Context) -> Score.State:
         """Nothing counted."""
         return nothing_counted(len(params.hypotheses))
 

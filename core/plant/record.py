@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, ClassVar
+
+import numpy as np
 
 from core.block import Block, BlockParams, FloatArray, parameter
 from core.measured_record import UNLABELLED, MeasuredRecord
@@ -28,12 +30,16 @@ class RecordPlant(Block):
 
     title = "Record"
     usual_sensor = "recorded"
-    takes = {"sense": ("recorded",), "faults": ()}
+    takes: ClassVar = {"sense": ("recorded",), "faults": ()}
 
     class Params(BlockParams):
         """The record."""
 
         record: str = parameter("", "key of the record, a SHA-256", live=False)
+        offset_um: float = parameter(0.0, "displacement that the record shows at rest", "um", ge=-1e6, le=1e6)
+        delay_samples: float = parameter(
+            0.0, "delay of the displacement behind the voltage, in samples", "samples", ge=0, le=64
+        )
 
     class State(Record):
         """The samples from ``first`` on."""
@@ -69,10 +75,21 @@ class RecordPlant(Block):
             x.missing = 1.0
 
 
-def supply(state: FloatArray, record: MeasuredRecord, tick: int, n: int) -> None:
-    """Put the samples of the next ticks into the state, at most ``WINDOW``."""
+def supply(state: FloatArray, params: Any, record: MeasuredRecord, tick: int, n: int) -> None:
+    """Put the samples of the next ticks into the state, at most ``WINDOW``: without offset, the voltage delayed."""
     s: Any = RecordPlant.State(state)
     end = min(tick + n, record.samples)
     count, s.first = end - tick, tick
-    s.drive[:count], s.displacement[:count] = record.drive[tick:end], record.displacement[tick:end]
+    s.drive[:count] = delayed(record.drive, params.delay_samples, tick, end)
+    s.displacement[:count] = record.displacement[tick:end]
+    if params.offset_um != 0.0:
+        s.displacement[:count] -= params.offset_um
     s.label[:count] = UNLABELLED if record.label is None else record.label[tick:end]
+
+
+def delayed(drive: FloatArray, delay: float, first: int, end: int) -> FloatArray:
+    """Return samples of a voltage that comes later; within a sample its mean, before the record its first value."""
+    whole = int(delay)
+    rest, places = delay - whole, np.arange(first - whole, end - whole)
+    found = drive[np.maximum(places, 0)]
+    return found if rest == 0.0 else (1.0 - rest) * found + rest * drive[np.maximum(places - 1, 0)]

@@ -28,12 +28,12 @@ class Recorded(Block):
         displacement: float = output("um", "measured displacement")
 
     @classmethod
-    def noise_um(cls, params: Any, context: Context) -> float:  # noqa: ARG003 (a property of the record alone)
+    def noise_um(cls, params: Any, context: Context) -> float:
         """Return the noise of a sample."""
         return float(params.noise_um)
 
     @classmethod
-    def ambiguity_um(cls, params: Any, context: Context) -> float:  # noqa: ARG003
+    def ambiguity_um(cls, params: Any, context: Context) -> float:
         """Return 0: a record distinguishes all displacements."""
         return 0.0
 

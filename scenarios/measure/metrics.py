@@ -178,7 +178,7 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
     if board.tick > 1:
         if board.spec.axes:
             figures |= rate_metrics(board, trace, stretch)
-        else:
+        elif board.spec.record is None:  # no law drives a record, and no record knows the true motion
             figures |= control_metrics(board, trace, stretch) | sensing_metrics(board, trace, stretch)
     for name in board.spec.identifiers if board.tick > 1 else ():
         figures |= identify_metrics(board, name, trace.get(f"{name}.error_pct"), stretch)

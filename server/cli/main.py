@@ -23,9 +23,11 @@ from scenarios.report.text import gallery_text
 from scenarios.run import run as run_scenario
 from server.cli.bench import bench
 from server.cli.benchmark import benchmark
+from server.cli.diagnose import diagnose_file
 from server.cli.export import fmu
 from server.cli.games import game
 from server.cli.lessons import lectures, sheets
+from server.cli.replay import replay
 from server.cli.run import run
 from server.cli.schema import schema
 from server.cli.terminal import JsonOption, plainly, say, say_json
@@ -53,6 +55,8 @@ class OneLine(TyperGroup):
 
 app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 app.command()(run)
+app.command()(replay)
+app.command("diagnose")(diagnose_file)
 app.command()(fmu)
 app.command()(bench)
 app.command()(benchmark)

@@ -1,0 +1,141 @@
+r"""Calibration: the device behind a healthy stretch of a record, and whether a mass, a damper and a spring explain it.
+
+Fitted on one half, tested on the other. Only ratios to the force follow from voltage and displacement: a gain of the
+sensor and the force of the comb are one number, and so the force stays nominal.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.block import Oscillator
+from core.errors import InputError
+from core.measured_record import MeasuredRecord
+from scenarios.records.columns import Numbers
+from scenarios.records.fit import SKIPPED, Fit, fit, remainder
+from scenarios.records.misfits import CHECKS, Check, Halves
+
+LEAST = 400
+"""Least samples of a healthy stretch."""
+MOST = 40_000
+"""Most samples of a healthy stretch that are read."""
+UNCERTAIN = 0.02
+"""Largest standard error of mass and stiffness over their values; hypotheses are 5 % apart."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its standard error."""
+
+    value: float
+    error: float
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval."""
+        return self.value - 1.96 * self.error, self.value + 1.96 * self.error
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A device behind a record.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : Estimate
+        Over nominal, at the nominal force.
+    offset_um, delay_samples : Estimate
+        Of the measured displacement; of the displacement behind the voltage.
+    noise_um, quantum_um : float
+        Standard deviation of a sample with its rounding; step of the converter, 0 where none is seen.
+    checks : list of Check
+        Each possible reason against the model.
+    refusal : str
+        A sentence why the record does not fit the model; empty where it does.
+    """
+
+    mass: Estimate
+    damping: Estimate
+    stiffness: Estimate
+    offset_um: Estimate
+    delay_samples: Estimate
+    noise_um: float
+    quantum_um: float
+    samples: int
+    checks: list[Check] = field(default_factory=list)
+    refusal: str = ""
+
+
+def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: int | None = None) -> Calibration:
+    """Return the calibration by a healthy stretch, from sample ``first`` to before ``end``.
+
+    Raises
+    ------
+    InputError
+        For a stretch that is too short, or a voltage that does not move.
+    """
+    end = record.samples if end is None else end
+    if not 0 <= first < end <= record.samples:
+        raise InputError(f"must lie within 0 and {record.samples}, got {first} to {end}", "healthy")
+    end = min(end, first + MOST)
+    if end - first < LEAST:
+        raise InputError(f"has {end - first} samples; {LEAST} are the least", "healthy")
+    drive, displacement = record.drive[first:end], record.displacement[first:end]
+    if np.ptp(drive) == 0.0:
+        raise InputError("the voltage does not move in this stretch", "healthy", "choose another, or excite the device")
+    dt_ms, half = 1.0 / record.rate_khz, (end - first) // 2
+    shape = nominal.stiffness / nominal.mass, nominal.damping / nominal.mass
+    found = fit(drive[:half], displacement[:half], dt_ms, *shape)
+    later = remainder(found, drive[half - SKIPPED :], displacement[half - SKIPPED :], dt_ms)
+    halves = Halves(found, *later, drive, displacement, dt_ms)
+    checks = [check(halves) for check in CHECKS]
+    estimates = _estimates(found, nominal)
+    refusal = next((one.sentence for one in checks if not one.ok), "") or _uncertain(estimates)
+    return Calibration(
+        **estimates,
+        noise_um=found.noise,
+        quantum_um=halves.quantum,
+        samples=end - first,
+        checks=checks,
+        refusal=refusal,
+    )
+
+
+def _estimates(found: Fit, nominal: Oscillator) -> dict[str, Estimate]:
+    r"""Return the numbers of the fit as ratios to nominal, with standard errors to first order.
+
+    At the nominal force the mass is :math:`m=F/g`, the damping :math:`a_1m` and the stiffness :math:`a_0m`.
+    """
+    mass = abs(nominal.force / found.gain) / nominal.mass
+    damping = found.damping * mass * nominal.mass / nominal.damping
+    stiffness = found.stiffness * mass * nominal.mass / nominal.stiffness
+    # logarithms: of the mass -gain, of the damping damping - gain, of the stiffness stiffness - gain
+    rows = {"mass": (0, 0, 0, -1, 0), "damping": (0, 1, 0, -1, 0), "stiffness": (1, 0, 0, -1, 0)}
+    values = {"mass": mass, "damping": damping, "stiffness": stiffness}
+    errors = {name: math.sqrt(_variance(np.array(row, float), found.covariance)) for name, row in rows.items()}
+    ratios = {name: Estimate(values[name], values[name] * errors[name]) for name in rows}
+    sizes = np.sqrt(np.diag(found.covariance))
+    return {
+        **ratios,
+        "delay_samples": Estimate(found.delay, float(sizes[2])),
+        "offset_um": Estimate(found.offset, float(sizes[4])),
+    }
+
+
+def _variance(row: Numbers, covariance: Numbers) -> float:
+    return float(row @ covariance @ row)
+
+
+def _uncertain(estimates: dict[str, Estimate]) -> str:
+    """Return the sentence for an input that cannot tell mass from stiffness."""
+    for name in ("mass", "stiffness"):
+        one = estimates[name]
+        if not one.error <= UNCERTAIN * one.value:
+            return (
+                f"the {name} is uncertain by {100.0 * one.error / one.value:.0f} %: this voltage cannot tell mass from "
+                "stiffness; excite the device with two tones, a chirp or steps"
+            )
+    return ""

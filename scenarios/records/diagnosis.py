@@ -1,0 +1,149 @@
+"""A record diagnosed: calibrated by a healthy stretch, then looked at by the banks of a bench."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from core.board.instances import scored
+from core.diagnose.hypothesis import hypotheses_of, names_of
+from core.measured_record import MeasuredRecord
+from scenarios.measure.blocks import loaded
+from scenarios.records.bench import on_record
+from scenarios.records.calibration import Calibration, calibrate
+from scenarios.records.shelf import RecordFolder
+from scenarios.run import RunResult, run
+from scenarios.schema import Scenario
+
+UNEXPLAINED = "unexplained"
+SURE = 0.9
+"""Probability from which a verdict counts."""
+UNSURE = "unsure"
+SHORTEST = 20
+"""Samples a verdict must last to be listed by itself."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A stretch of samples with one verdict: a hypothesis, `UNEXPLAINED` or `UNSURE`; its mean probability."""
+
+    first: int
+    end: int
+    verdict: str
+    probability: float
+
+
+@dataclass
+class Diagnosis:
+    """The calibration, the scenario that plays the record, and the verdicts of each bank; none after a refusal."""
+
+    record: MeasuredRecord
+    calibration: Calibration
+    bench: Scenario | None = None
+    result: RunResult | None = field(default=None, repr=False)
+    verdicts: dict[str, list[Verdict]] = field(default_factory=dict)
+    shares: dict[str, dict[str, float]] = field(default_factory=dict)
+    healthy: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def refusal(self) -> str:
+        """Why there is no verdict; empty where there is."""
+        return self.calibration.refusal
+
+
+def diagnose(
+    record: MeasuredRecord,
+    scenario: Scenario,
+    first: int = 0,
+    end: int | None = None,
+    folder: RecordFolder | None = None,
+) -> Diagnosis:
+    """Return the diagnosis of a record.
+
+    Parameters
+    ----------
+    record : MeasuredRecord
+        Its labels are not read for the verdicts; where it has labels, the figures of the result have the score.
+    scenario : Scenario
+        The bench whose diagnosers look at it.
+    first, end : int
+        The healthy stretch; without an end the first quarter of the record.
+
+    Raises
+    ------
+    InputError
+        For a stretch that cannot calibrate.
+    """
+    end = max(record.samples // 4, 1) if end is None else end
+    calibration = calibrate(record, scenario.spec.nominal, first, end)
+    if calibration.refusal:
+        return Diagnosis(record, calibration)
+    key = (folder or RecordFolder()).keep(record)
+    bench = Scenario.load(on_record(scenario, record, key, calibration=calibration))
+    result = run(bench, taps=True)
+    found = Diagnosis(record, calibration, bench, result)
+    for name, section in bench.spec.diagnosers.items():
+        if scored(section.block):
+            words = _words(result, name, names_of(section.params))
+            found.verdicts[name] = words
+            found.healthy[name] = _healthy(section.params)
+            found.shares[name] = _shares(words, record.samples)
+    return found
+
+
+def _healthy(params: Any) -> str:
+    """Return the name of the hypothesis without a fault; empty where a bank has none."""
+    return next((one.name for one in hypotheses_of(params) if one.is_nominal), "")
+
+
+def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[Verdict]:
+    """Return the verdicts of a bank, stretch by stretch; short ones belong to the stretch before."""
+    probability = np.stack([loaded(result.signal(f"{name}.probability.{one}")) for one in hypotheses])
+    winner, most = probability.argmax(axis=0), probability.max(axis=0)
+    words = [*hypotheses, UNSURE, UNEXPLAINED]
+    index = np.where(most >= SURE, winner, len(hypotheses))
+    index[loaded(result.signal(f"{name}.unexplained")) != 0.0] = len(hypotheses) + 1
+    edges = np.flatnonzero(np.diff(index)) + 1
+    found: list[Verdict] = []
+    for first, end in zip([0, *edges.tolist()], [*edges.tolist(), len(index)], strict=True):
+        word = words[index[first]]
+        mean = float(most[first:end].mean())
+        if found and (end - first < SHORTEST or found[-1].verdict == word):
+            last = found.pop()
+            long = last.end - last.first
+            mean = (last.probability * long + mean * (end - first)) / (long + end - first)
+            found.append(Verdict(last.first, end, last.verdict, mean))
+        else:
+            found.append(Verdict(first, end, word, mean))
+    return found
+
+
+def _shares(verdicts: list[Verdict], samples: int) -> dict[str, float]:
+    """Return the share of samples of each verdict, the largest first."""
+    counted: dict[str, float] = {}
+    for one in verdicts:
+        counted[one.verdict] = counted.get(one.verdict, 0.0) + (one.end - one.first) / samples
+    return dict(sorted(counted.items(), key=lambda entry: -entry[1]))
+
+
+def as_document(found: Diagnosis) -> dict[str, Any]:
+    """Return a diagnosis as JSON can carry it."""
+    calibration = found.calibration
+    estimates = ("mass", "damping", "stiffness", "offset_um", "delay_samples")
+    return {
+        "samples": found.record.samples,
+        "rate_khz": found.record.rate_khz,
+        "calibration": {
+            **{name: vars(getattr(calibration, name)) for name in estimates},
+            "noise_um": calibration.noise_um,
+            "quantum_um": calibration.quantum_um,
+            "samples": calibration.samples,
+            "checks": [vars(one) for one in calibration.checks],
+        },
+        "refusal": found.refusal,
+        "verdicts": {name: [vars(one) for one in verdicts] for name, verdicts in found.verdicts.items()},
+        "shares": found.shares,
+        "figures": found.result.metrics if found.result is not None and found.record.label is not None else {},
+    }

@@ -1,0 +1,210 @@
+r"""A mass, damper and spring with delay, offset and gain, fitted to a record by output error.
+
+.. math:: \ddot x+a_1\dot x+a_0x=g\,u(t-\tau),\qquad y_i=x(t_i)+c+v_i
+
+The voltage is held between samples, so the motion at the samples is exact for every delay: within a sample the input
+changes once, after the fraction of the delay. Gain, offset and the two numbers of the first motion enter the output
+linearly and are solved for at each step (variable projection, Golub and Pereyra 1973); three numbers are searched.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import expm, solve_triangular
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
+
+from scenarios.records.columns import Numbers
+
+MOST_DELAY = 8
+"""Longest delay that is searched, in samples."""
+STIFFNESSES = (-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8)
+DAMPINGS = (-1.0, 0.0, 1.0)
+"""Starts of the search: logarithms of stiffness and damping over mass, over nominal."""
+BEGUN = 600
+"""Samples by which starts are compared."""
+REFINED = 3
+"""The best starts that are refined."""
+STEP = 1e-5
+"""Change of a delay for a difference, in samples."""
+SKIPPED = MOST_DELAY + 1
+"""First samples whose voltage may have come before the record."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The numbers of the fit, their covariance, and the residual of each sample after the first ``SKIPPED``.
+
+    Parameters
+    ----------
+    stiffness, damping : float
+        Over mass, 1/ms^2 and 1/ms.
+    delay : float
+        In samples.
+    gain : float
+        Of the voltage on the acceleration, um/(ms^2 V).
+    offset : float
+        um.
+    covariance : array, shape (5, 5)
+        Of the logarithms of stiffness and damping, the delay, the logarithm of the gain, and the offset.
+    residual, motion : array
+        Measured minus fitted displacement, and the fitted displacement without offset, um.
+    seen : array, shape (samples, 7)
+        An orthonormal basis of the changes of the output that a change of the numbers makes.
+    """
+
+    stiffness: float
+    damping: float
+    delay: float
+    gain: float
+    offset: float
+    covariance: Numbers = field(repr=False)
+    residual: Numbers = field(repr=False)
+    motion: Numbers = field(repr=False)
+    seen: Numbers = field(repr=False)
+
+    def unseen(self, shape: Numbers) -> Numbers:
+        """Return the part of columns that no number of the fit could take up."""
+        return shape - self.seen @ (self.seen.T @ shape)
+
+    def pushed(self, force: Numbers, dt_ms: float) -> Numbers:
+        """Return the displacement under an acceleration that is held at every sample, from rest."""
+        phi, push = transition(self.stiffness, self.damping, dt_ms)
+        return response(phi, push, force)
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of the residual, um."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+
+def transition(stiffness: float, damping: float, dt_ms: float) -> tuple[Numbers, Numbers]:
+    """Return the transition of displacement and velocity over some time, and the reach of a unit acceleration."""
+    whole = np.zeros((3, 3))
+    whole[0, 1], whole[1] = 1.0, (-stiffness, -damping, 1.0)
+    power = expm(whole * dt_ms)
+    return power[:2, :2], power[:2, 2]
+
+
+def responses(stiffness: float, damping: float, delay: float, drive: Numbers, dt_ms: float) -> Numbers:
+    """Return the output of a unit gain, of the two first states and of a unit offset, one column for each."""
+    whole = min(int(delay), MOST_DELAY)
+    rest = (delay - whole) * dt_ms
+    phi, both = transition(stiffness, damping, dt_ms)
+    new = transition(stiffness, damping, dt_ms - rest)[1]
+    old = both - new if rest > 0.0 else np.zeros(2)  # the voltage before acts first, then moves on with the rest
+    count = len(drive) - SKIPPED
+    now = drive[SKIPPED - whole : SKIPPED - whole + count]
+    before = drive[SKIPPED - whole - 1 : SKIPPED - whole - 1 + count]
+    denominator = _denominator(phi)
+    columns = np.ones((count, 4))
+    columns[:, 0] = lfilter(_numerator(phi, new), denominator, now)
+    if rest > 0.0:
+        columns[:, 0] += lfilter(_numerator(phi, old), denominator, before)
+    impulse = np.zeros(count)
+    impulse[0] = 1.0
+    columns[:, 1] = lfilter([1.0, -phi[1, 1]], denominator, impulse)
+    columns[:, 2] = lfilter([0.0, phi[0, 1]], denominator, impulse)
+    return columns
+
+
+def _numerator(phi: Numbers, push: Numbers) -> list[float]:
+    """Return the polynomial from an acceleration to the displacement."""
+    return [0.0, float(push[0]), float(phi[0, 1] * push[1] - phi[1, 1] * push[0])]
+
+
+def _denominator(phi: Numbers) -> list[float]:
+    return [1.0, -float(np.trace(phi)), float(np.linalg.det(phi))]
+
+
+def response(phi: Numbers, push: Numbers, force: Numbers) -> Numbers:
+    """Return the displacement under an acceleration that is held at every sample, from rest."""
+    return np.asarray(lfilter(_numerator(phi, push), _denominator(phi), force), dtype=np.float64)
+
+
+def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, damping: float) -> Fit:
+    """Return the fit; stiffness and damping over mass of the nominal device are where the search begins.
+
+    A displacement that is no number is left out.
+    """
+    known = np.isfinite(displacement[SKIPPED:])
+    y = displacement[SKIPPED:][known]
+
+    def solved(numbers: Numbers, most: int | None = None) -> tuple[Numbers, Numbers, Numbers]:
+        few = drive if most is None else drive[: SKIPPED + most]
+        basis = responses(math.exp(numbers[0]), math.exp(numbers[1]), numbers[2], few, dt_ms)
+        basis = basis[known[: len(basis)]]
+        scale = np.sqrt(np.mean(basis**2, axis=0)) + 1e-300
+        unit, triangle = np.linalg.qr(basis / scale)
+        weights = solve_triangular(triangle, unit.T @ y[: len(basis)]) / scale
+        return y[: len(basis)] - basis @ weights, weights, basis
+
+    def residual(numbers: Numbers) -> Numbers:
+        return solved(numbers)[0]
+
+    def begun(numbers: Numbers) -> float:
+        left = solved(numbers, BEGUN)[0]
+        return float(left @ left)
+
+    starts = [
+        np.array([math.log(stiffness) + more, math.log(damping) + slower, float(delay)])
+        for more in STIFFNESSES
+        for slower in DAMPINGS
+        for delay in range(0, MOST_DELAY, 2)
+    ]
+    starts.sort(key=begun)
+    bounds = ([-np.inf, -np.inf, 0.0], [np.inf, np.inf, float(MOST_DELAY)])
+    found = [
+        least_squares(residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=1e-6, xtol=1e-12, ftol=1e-12)
+        for start in starts[:REFINED]
+    ]
+    best = min(found, key=lambda one: float(one.cost))
+    numbers: Numbers = best.x
+    left, weights, basis = solved(numbers)
+    gain = float(weights[0])
+    # the whole Jacobian: three numbers by differences with the linear ones held, and the linear ones by their columns
+    jacobian = np.empty((len(y), 7))
+    for i, step in enumerate((1e-6, 1e-5, 1e-5)):
+        moved = numbers.copy()
+        moved[i] += step if numbers[i] + step <= bounds[1][i] else -step
+        other = responses(math.exp(moved[0]), math.exp(moved[1]), moved[2], drive, dt_ms)[known]
+        jacobian[:, i] = (other - basis) @ weights / (moved[i] - numbers[i])
+    jacobian[:, 3], jacobian[:, 4:] = gain * basis[:, 0], basis[:, [3, 1, 2]]
+    scale = np.sqrt(np.sum(jacobian**2, axis=0)) + 1e-300
+    inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale), rcond=1e-15) / np.outer(scale, scale)
+    variance = float(left @ left) / max(len(y) - 7, 1)
+    return Fit(
+        stiffness=math.exp(numbers[0]),
+        damping=math.exp(numbers[1]),
+        delay=float(numbers[2]),
+        gain=gain,
+        offset=float(weights[3]),
+        covariance=variance * inverse[:5, :5],
+        residual=left,
+        motion=y - left - weights[3],
+        seen=np.linalg.qr(jacobian / scale)[0],
+    )
+
+
+def remainder(found: Fit, drive: Numbers, displacement: Numbers, dt_ms: float) -> tuple[Numbers, float, float]:
+    """Return the residual on another stretch, the delay that it misses in samples, and the error of this delay.
+
+    The first motion of the stretch is fitted, and no number of the device.
+    """
+    basis, later = (
+        responses(found.stiffness, found.damping, delay, drive, dt_ms) for delay in (found.delay, found.delay + STEP)
+    )
+    known = np.isfinite(displacement[SKIPPED:])
+    begun, _ = np.linalg.qr(basis[known][:, 1:3])
+
+    def moved(columns: Numbers) -> Numbers:
+        return columns - begun @ (begun.T @ columns)
+
+    left = moved(displacement[SKIPPED:][known] - found.gain * basis[known, 0] - found.offset)
+    slope = moved(found.gain * (later - basis)[known, 0] / STEP)
+    size = float(slope @ slope)
+    missed = float(left @ slope) / size if size > 0.0 else 0.0
+    return left, missed, float(np.sqrt(np.mean(left**2) / size)) if size > 0.0 else math.inf

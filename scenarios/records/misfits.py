@@ -1,0 +1,180 @@
+"""Reasons against a mass, a damper and a spring: each check looks at one, and says in a sentence what it found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy.signal import lfilter
+
+from scenarios.records.columns import Numbers
+from scenarios.records.fit import SKIPPED, Fit, response, transition
+
+CLIPPED = 0.005
+"""Share of samples at an extreme value for which a converter counts as clipped."""
+GROWN = 1.3
+"""Largest standard deviation on the half that was not fitted, over the other half."""
+ALIKE = 0.15
+"""Largest correlation of a residual with an earlier one."""
+LAGS = 40
+STEEP = 4.5
+"""Standard errors beyond which a correlation is none of chance."""
+DRIFT = 0.1
+"""Largest change of the delay between the halves, in samples."""
+NAMED = 0.3
+"""Share of the residual's power that an effect must explain to be named as the reason."""
+MODES = tuple(np.geomspace(0.3, 8.0, 60).tolist())
+"""Second modes that are looked for, over the frequency of the device."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A figure, its limit, whether it holds, and the sentence where it does not."""
+
+    name: str
+    value: float
+    limit: float
+    ok: bool
+    sentence: str = ""
+
+
+@dataclass
+class Halves:
+    """The fit on the first half of a stretch; on the second its residual, and the delay it misses with an error."""
+
+    fitted: Fit
+    later: Numbers = field(repr=False)
+    missed_delay: float
+    delay_error: float
+    drive: Numbers = field(repr=False)
+    displacement: Numbers = field(repr=False)
+    dt_ms: float
+
+    @cached_property
+    def quantum(self) -> float:
+        """Step of the converter, um; 0 where none is seen."""
+        values = np.unique(self.displacement[np.isfinite(self.displacement)])
+        if len(values) < 2:
+            return 0.0
+        steps = np.diff(values)
+        least = float(steps[steps > 1e-9 * np.ptp(values)].min())
+        off = np.abs(steps / least - np.rint(steps / least))
+        return least if np.mean(off < 0.02) > 0.98 and len(values) < 0.9 * len(self.displacement) else 0.0
+
+    @property
+    def rounding(self) -> float:
+        """Standard deviation of the rounding, um: no model can do better."""
+        return self.quantum / math.sqrt(12.0)
+
+
+def clipping(halves: Halves) -> Check:
+    """Look for samples that stay at an extreme value."""
+    y = halves.displacement[np.isfinite(halves.displacement)]
+    at = [float(np.mean(y == extreme)) for extreme in (y.min(), y.max())]
+    runs = max(_longest(y == y.min()), _longest(y == y.max()))
+    still = max(at) > CLIPPED and runs > 3 and not _is_resting(halves)
+    side = y.max() if at[1] >= at[0] else y.min()
+    return Check(
+        "clipped", max(at), CLIPPED, not still, f"the displacement is clipped at {side:.4g} um" if still else ""
+    )
+
+
+def _longest(marks: np.ndarray) -> int:
+    """Return the length of the longest stretch of marks."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], marks.astype(np.int8), [0]))))
+    return int((edges[1::2] - edges[::2]).max()) if len(edges) else 0
+
+
+def _is_resting(halves: Halves) -> bool:
+    """Whether the motion is no larger than a few steps of the converter."""
+    return (
+        halves.quantum > 0.0
+        and float(np.nanmax(halves.displacement) - np.nanmin(halves.displacement)) < 8 * halves.quantum
+    )
+
+
+def growth(halves: Halves) -> Check:
+    """Compare the residual of the half that was not fitted with the other half."""
+    floor = max(halves.fitted.noise, halves.rounding)
+    ratio = float(np.sqrt(np.mean(halves.later**2))) / floor if floor > 0.0 else math.inf
+    ok = ratio <= GROWN
+    return Check(
+        "residual_ratio", ratio, GROWN, ok, "" if ok else _because(halves, f"its error grows {ratio:.1f} times")
+    )
+
+
+def whiteness(halves: Halves) -> Check:
+    """Look for correlation of the residuals, beyond chance and beyond the rounding of the converter."""
+    worst = max(_correlation(halves.fitted.residual), _correlation(halves.later))
+    limit = max(ALIKE, STEEP / math.sqrt(len(halves.later)))
+    is_rounding = halves.fitted.noise <= 1.1 * halves.rounding
+    ok = worst <= limit or is_rounding
+    return Check("correlation", worst, limit, ok, "" if ok else _because(halves, "its errors follow each other"))
+
+
+def _correlation(residual: Numbers) -> float:
+    """Return the largest correlation of the residual with an earlier one."""
+    e = residual - residual.mean()
+    power = float(e @ e)
+    if power == 0.0:
+        return 0.0
+    return max(abs(float(e[lag:] @ e[:-lag])) / power for lag in range(1, min(LAGS, len(e) // 4)))
+
+
+def drift(halves: Halves) -> Check:
+    """Look for a delay on the half that was not fitted which is another than on the fitted half."""
+    change, limit = abs(halves.missed_delay), max(DRIFT, STEEP * halves.delay_error)
+    ok = change <= limit
+    sentence = "" if ok else f"the delay drifts by {change:.1f} samples in this stretch"
+    return Check("delay_change", change, limit, ok, sentence)
+
+
+def _because(halves: Halves, found: str) -> str:
+    """Return the likely reason for a residual that is no noise: the effect that explains most of it."""
+    shares = [(_explained(halves.fitted, shape), name) for name, shape in _effects(halves)]
+    share, name = max(shares)
+    if share >= NAMED:
+        return f"{name} explains {100.0 * share:.0f} % of the motion that mass, damper and spring leave unexplained"
+    return f"a mass, a damper and a spring do not explain the motion: {found}"
+
+
+def _effects(halves: Halves) -> Iterator[tuple[str, Numbers]]:
+    """Return effects beside mass, damper and spring, each with the residuals that it would leave, of any size."""
+    fitted, dt_ms = halves.fitted, halves.dt_ms
+    x = fitted.motion
+    v = np.gradient(x, dt_ms)
+    yield "friction", fitted.pushed(np.sign(v), dt_ms)[:, None]
+    yield "a nonlinear spring", fitted.pushed(x**3, dt_ms)[:, None]
+    for part in (0.6, 0.75, 0.9):
+        over = np.maximum(np.abs(x) - part * np.abs(x).max(), 0.0)
+        yield "saturation of the displacement", (np.sign(x) * over)[:, None]
+    slow = math.sqrt(fitted.stiffness)
+    for ratio in (0.25, 0.5, 1.0, 2.0, 4.0):
+        filtered = lfilter([1.0 - math.exp(-ratio * slow * dt_ms)], [1.0, -math.exp(-ratio * slow * dt_ms)], x)
+        yield "a filter behind the motion, a model of higher order", np.asarray(filtered, np.float64)[:, None]
+    drive = halves.drive[SKIPPED : SKIPPED + len(x)]
+    for ratio in MODES:
+        stiffness = (ratio * slow) ** 2
+        phi, push = transition(stiffness, 0.05 * ratio * slow, dt_ms)
+        moved = response(phi, push, drive)
+        yield (
+            f"a second mode near {ratio * slow / (2.0 * math.pi):.2g} kHz",
+            np.stack([moved, np.gradient(moved, dt_ms)], 1),
+        )
+
+
+def _explained(fitted: Fit, shape: Numbers) -> float:
+    """Return the share of the residual's power that has one of these shapes, beyond the numbers of the fit."""
+    left = fitted.residual
+    size = np.sqrt(np.sum(shape**2, axis=0))
+    if not np.all(size > 0.0):
+        return 0.0
+    free = fitted.unseen(shape / size)
+    weights = np.linalg.lstsq(free, left)[0]
+    return float(1.0 - np.sum((left - free @ weights) ** 2) / np.sum(left**2))
+
+
+CHECKS: tuple[Callable[[Halves], Check], ...] = (clipping, drift, growth, whiteness)

@@ -1,0 +1,92 @@
+"""The shelf of records: a folder with a file for each, under its key."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import InputError
+from core.measured_record import MeasuredRecord, find_on
+
+FOLDER = "COMBBENCH_RECORDS"
+"""Variable of the environment that names the folder; worker processes inherit it."""
+KEY = "0123456789abcdef"
+
+
+class RecordFolder:
+    """Records in a folder, which is made when the first is kept."""
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._path = path
+
+    @property
+    def path(self) -> Path:
+        """The folder: the given one, the one of the environment, or one in the user's cache."""
+        if self._path is not None:
+            return self._path
+        home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+        return Path(os.environ.get(FOLDER) or Path(home) / "combbench" / "records")
+
+    def get(self, key: str) -> MeasuredRecord | None:
+        """Return a record; nothing when it is not here, or its file is not what it was."""
+        if len(key) != 64 or set(key) - set(KEY):
+            return None
+        return _loaded(self.path / f"{key}.npz", key)
+
+    def keep(self, record: MeasuredRecord) -> str:
+        """Keep a record, and return its key; a record that is here already is not written again.
+
+        Raises
+        ------
+        InputError
+            When the folder cannot be written.
+        """
+        key, columns = record.key, {"drive": record.drive, "displacement": record.displacement}
+        if record.label is not None:
+            columns["label"] = record.label
+        about = json.dumps({"rate_khz": record.rate_khz, "hypotheses": list(record.hypotheses)})
+        try:
+            self.path.mkdir(parents=True, exist_ok=True, mode=0o700)
+            if not (self.path / f"{key}.npz").exists():
+                with tempfile.NamedTemporaryFile(dir=self.path, delete=False) as file:
+                    np.savez(file, about=np.array(about), **columns)
+                os.replace(file.name, self.path / f"{key}.npz")
+        except OSError as error:
+            raise InputError(f"cannot write to {self.path}: {error.strerror}", FOLDER) from None
+        return key
+
+    def remove(self, key: str) -> None:
+        """Remove a record."""
+        (self.path / f"{key}.npz").unlink(missing_ok=True)
+        _loaded.cache_clear()
+
+    def keys(self) -> Iterator[str]:
+        """Return the keys of all records, in order."""
+        return iter(sorted(file.stem for file in self.path.glob("*.npz")))
+
+
+@lru_cache(maxsize=4)
+def _loaded(file: Path, key: str) -> MeasuredRecord | None:
+    try:
+        with np.load(file, allow_pickle=False) as kept:
+            about = json.loads(str(kept["about"]))
+            label = kept["label"] if "label" in kept else None
+            record = MeasuredRecord(
+                about["rate_khz"], kept["drive"], kept["displacement"], label, tuple(about["hypotheses"])
+            )
+    except (OSError, ValueError, KeyError):  # absent, or damaged
+        return None
+    return record if record.key == key else None
+
+
+def prepare() -> RecordFolder:
+    """Let the benches of this process find the records of the folder."""
+    folder = RecordFolder()
+    find_on(folder)
+    return folder

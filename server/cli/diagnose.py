@@ -1,0 +1,93 @@
+"""The command that diagnoses a record of a real device."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from core.errors import InputError
+from core.format import format_short
+from scenarios.records.diagnosis import UNEXPLAINED, UNSURE, Diagnosis, as_document, diagnose
+from server.cli.replay import BenchOption, FileArgument, MapOption, PairingOption, RateOption, read_file
+from server.cli.terminal import JsonOption, load, plainly, say, say_json
+from server.cli.units import UnitOption
+
+NO_FAULT, FAULT, REFUSED = 0, 1, 3
+MOST_UNEXPLAINED = 0.2
+"""Share of unexplained samples from which a record counts as unexplained."""
+
+
+@plainly
+def diagnose_file(
+    file: FileArgument,
+    scenario: BenchOption = "first-look",
+    healthy: Annotated[
+        str | None,
+        typer.Option(metavar="A:B", help="The healthy stretch, samples A to before B; the first quarter without it."),
+    ] = None,
+    named: MapOption = None,
+    rate_khz: RateOption = None,
+    pairing: PairingOption = "next",
+    units: UnitOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Calibrate by a healthy stretch and diagnose; exit code 0: no fault, 1: a fault, 3: refused or unexplained."""
+    read = read_file(file, named, rate_khz, pairing)
+    first, end = _stretch(healthy, read.record.samples)
+    found = diagnose(read.record, load(scenario, units), first, end)
+    if as_json:
+        say_json({**as_document(found), "columns": read.columns, "notes": read.notes, "exit": _exit(found)})
+    else:
+        for note in read.notes:
+            say(f"note: {note}")
+        say(_text(found))
+    raise typer.Exit(_exit(found))
+
+
+def _stretch(text: str | None, samples: int) -> tuple[int, int | None]:
+    if text is None:
+        return 0, None
+    first, _, end = text.partition(":")
+    try:
+        return int(first or 0), int(end) if end else samples
+    except ValueError:
+        raise InputError(f"must be A:B, two samples, got {text!r}", "--healthy", "--healthy 0:2000") from None
+
+
+def _exit(found: Diagnosis) -> int:
+    """Return the exit code: the bank with the worst news decides."""
+    if found.refusal:
+        return REFUSED
+    codes = [NO_FAULT]
+    for name, shares in found.shares.items():
+        faults = set(shares) - {UNEXPLAINED, UNSURE, found.healthy[name]}
+        codes.append(REFUSED if shares.get(UNEXPLAINED, 0.0) >= MOST_UNEXPLAINED else FAULT if faults else NO_FAULT)
+    return max(codes)
+
+
+def _text(found: Diagnosis) -> str:
+    """Return the calibration and the verdicts as lines."""
+    one = found.calibration
+    lines = [f"calibrated by {one.samples} samples, half of them fitted, half of them tested:"]
+    for name, unit in (
+        ("mass", ""),
+        ("damping", ""),
+        ("stiffness", ""),
+        ("offset_um", "um"),
+        ("delay_samples", "samples"),
+    ):
+        estimate = getattr(one, name)
+        low, high = estimate.interval
+        over = f"{unit or 'of nominal'}, 95 % interval {low:.5g} to {high:.5g}"
+        lines.append(f"  {name.removesuffix('_um').removesuffix('_samples'):<10} {estimate.value:9.5f} {over}")
+    lines.append(f"  {'noise':<10} {format_short(one.noise_um, 'um')}")
+    if found.refusal:
+        return "\n".join([*lines, f"REFUSED: {found.refusal}"])
+    for name, verdicts in found.verdicts.items():
+        shares = ", ".join(f"{word} {100.0 * share:.0f} %" for word, share in found.shares[name].items())
+        lines.append(f"{name}: {shares}")
+        for entry in verdicts:
+            loud = "  <- no hypothesis explains this" if entry.verdict == UNEXPLAINED else ""
+            lines.append(f"  {entry.first:>8} to {entry.end:>8}  {entry.verdict:<12} {entry.probability:.3f}{loud}")
+    return "\n".join(lines)
