@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ class MeasuredRecord:
 
     def __post_init__(self) -> None:
         """Check the columns, and keep them from changes."""
-        columns = {"drive": self.drive, "displacement": self.displacement}
+        columns: dict[str, NDArray[Any]] = {"drive": self.drive, "displacement": self.displacement}
         if self.label is not None:
             columns["label"] = self.label
         for name, column in columns.items():

@@ -14,6 +14,7 @@ class RecordDrive(Drive):
     """Applies the recorded voltage; laws in shadow know the same limits as with a device."""
 
     title = "Recorded drive"
+    apart = True
 
     class Packed(Record):
         """Nothing: the record has been through its own limits."""

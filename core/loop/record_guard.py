@@ -11,6 +11,7 @@ class RecordGuard(Block):
     """Never trips the board; the end of the record does."""
 
     title = "Guard of a record"
+    apart = True
 
     class Params(BlockParams):
         """Nothing to choose."""

@@ -26,6 +26,7 @@ class RecordScore(Block):
     """
 
     title = "Score on a record"
+    apart = True
     lengths = ("hypotheses",)
     Params = LabelledModels
     State = Score.State

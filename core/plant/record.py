@@ -29,6 +29,7 @@ class RecordPlant(Block):
     """
 
     title = "Record"
+    apart = True
     usual_sensor = "recorded"
     takes: ClassVar = {"sense": ("recorded",), "faults": ()}
 

@@ -23,7 +23,11 @@ MOST_DELAY = 8
 """Longest delay that is searched, in samples."""
 STIFFNESSES = (-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8)
 DAMPINGS = (-1.0, 0.0, 1.0)
-"""Starts of the search: logarithms of stiffness and damping over mass, over nominal."""
+DELAYS = (0.5, 2.5, 4.5, 6.5)
+"""Starts of the search: logarithms of stiffness and damping over mass, over nominal, and delays in samples.
+
+No start is at a bound, which a search leaves with difficulty.
+"""
 BEGUN = 600
 """Samples by which starts are compared."""
 REFINED = 3
@@ -150,15 +154,15 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
         return float(left @ left)
 
     starts = [
-        np.array([math.log(stiffness) + more, math.log(damping) + slower, float(delay)])
+        np.array([math.log(stiffness) + more, math.log(damping) + slower, delay])
         for more in STIFFNESSES
         for slower in DAMPINGS
-        for delay in range(0, MOST_DELAY, 2)
+        for delay in DELAYS
     ]
     starts.sort(key=begun)
     bounds = ([-np.inf, -np.inf, 0.0], [np.inf, np.inf, float(MOST_DELAY)])
     found = [
-        least_squares(residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=1e-6, xtol=1e-12, ftol=1e-12)
+        least_squares(residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=np.array(1e-6), xtol=1e-12, ftol=1e-12)
         for start in starts[:REFINED]
     ]
     best = min(found, key=lambda one: float(one.cost))

@@ -17,7 +17,7 @@ CLIPPED = 0.005
 """Share of samples at an extreme value for which a converter counts as clipped."""
 GROWN = 1.3
 """Largest standard deviation on the half that was not fitted, over the other half."""
-ALIKE = 0.15
+ALIKE = 0.2
 """Largest correlation of a residual with an earlier one."""
 LAGS = 40
 STEEP = 4.5

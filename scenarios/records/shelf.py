@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -47,7 +48,7 @@ class RecordFolder:
         InputError
             When the folder cannot be written.
         """
-        key, columns = record.key, {"drive": record.drive, "displacement": record.displacement}
+        key, columns = record.key, dict[str, Any](drive=record.drive, displacement=record.displacement)
         if record.label is not None:
             columns["label"] = record.label
         about = json.dumps({"rate_khz": record.rate_khz, "hypotheses": list(record.hypotheses)})

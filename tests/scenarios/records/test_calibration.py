@@ -1,0 +1,103 @@
+"""Calibration and diagnosis of devices that are simulated apart from the bench."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.measured_record import MeasuredRecord
+from scenarios.library import get
+from scenarios.records.calibration import calibrate
+from scenarios.records.diagnosis import UNEXPLAINED, diagnose
+from scenarios.records.shelf import RecordFolder
+from tests.scenarios.records.foreign import DT, HEALTHY, NAMES, OUTSIDE, Foreign, draw
+
+
+def record_of(one: Foreign) -> MeasuredRecord:
+    return MeasuredRecord(1 / DT, one.drive.copy(), one.displacement.copy())
+
+
+def right(one: Foreign, folder: RecordFolder) -> float:
+    """Return the share of samples after the healthy stretch with the right verdict; 0 after a refusal."""
+    found = diagnose(record_of(one), get("first-look"), 0, HEALTHY, folder)
+    if found.result is None:
+        return 0.0
+    winner = np.stack([found.result.signal(f"kalman.probability.{name}") for name in NAMES]).argmax(axis=0)
+    return float((winner == one.truth)[HEALTHY:].mean())
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_foreign_device_is_diagnosed_after_a_calibration_that_sees_no_label(seed: int, folder: RecordFolder) -> None:
+    one = draw(seed)
+    assert right(one, folder) >= 0.95
+    found = calibrate(record_of(one), get("first-look").spec.nominal, 0, HEALTHY)
+    for name, truth in one.ratios.items():
+        estimate = getattr(found, name)
+        assert abs(estimate.value - truth) < 4 * estimate.error, name
+    step = found.quantum_um / 12**0.5
+    assert found.noise_um == pytest.approx(np.hypot(one.drawn["noise"], step), rel=0.1)
+
+
+@pytest.mark.parametrize("outside", OUTSIDE)
+def test_a_device_outside_the_model_is_refused_in_a_sentence(outside: str) -> None:
+    found = calibrate(record_of(draw(3, outside)), get("first-look").spec.nominal, 0, HEALTHY)
+    assert found.refusal and not all(check.ok for check in found.checks)
+    words = {"drifting delay": "delay", "higher order": "higher order"}.get(outside, outside)
+    assert words in found.refusal
+
+
+def test_a_single_tone_cannot_tell_mass_from_stiffness() -> None:
+    one = draw(4)
+    t = np.arange(9000) * DT
+    drive = 8 * np.sin(2 * np.pi * 2.0 * t)
+    phasor = np.sin(2 * np.pi * 2.0 * t - 1.0) + np.random.default_rng(1).normal(0, 0.02, 9000)
+    found = calibrate(MeasuredRecord(1 / DT, drive, phasor), get("first-look").spec.nominal, 0, HEALTHY)
+    assert "cannot tell mass from stiffness" in found.refusal and "two tones" in found.refusal
+    assert one.drawn["m"] > 0
+
+
+def test_a_healthy_record_of_the_bench_itself_has_no_fault(own: MeasuredRecord, folder: RecordFolder) -> None:
+    healthy = MeasuredRecord(50.0, own.drive[:2000].copy(), own.displacement[:2000].copy())
+    found = diagnose(healthy, get("ch5-seven-step"), 0, 1000, folder)
+    assert not found.refusal and found.shares["kalman"]["healthy"] > 0.98
+    assert found.shares["kalman"].get(UNEXPLAINED, 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("first", "end", "text"), [(0, 100, "400 are the least"), (-1, 900, "within 0 and"), (0, 99999, "within 0 and")]
+)
+def test_a_stretch_that_cannot_calibrate_is_refused(first: int, end: int, text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        calibrate(record_of(draw(1, samples=1000)), get("first-look").spec.nominal, first, end)
+
+
+def test_a_voltage_that_rests_is_refused() -> None:
+    rest = MeasuredRecord(50.0, np.zeros(1000), np.random.default_rng(1).normal(0, 0.01, 1000))
+    with pytest.raises(InputError, match="does not move"):
+        calibrate(rest, get("first-look").spec.nominal)
+
+
+@pytest.mark.long
+def test_most_foreign_devices_are_diagnosed_and_intervals_cover_the_truth(folder: RecordFolder) -> None:
+    shares, covered = [], []
+    for seed in range(100, 160):
+        one = draw(seed)
+        shares.append(right(one, folder))
+        found = calibrate(record_of(one), get("first-look").spec.nominal, 0, HEALTHY)
+        for name, truth in one.ratios.items():
+            low, high = getattr(found, name).interval
+            covered.append(low <= truth <= high)
+    assert np.mean([share >= 0.95 for share in shares]) >= 0.95
+    assert 0.9 <= np.mean(covered) <= 0.99
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("outside", OUTSIDE)
+def test_devices_outside_the_model_get_no_confident_fault(outside: str, folder: RecordFolder) -> None:
+    confident = 0
+    for seed in range(200, 220):
+        found = diagnose(record_of(draw(seed, outside)), get("first-look"), 0, HEALTHY, folder)
+        wrong = [one for one in found.verdicts.get("kalman", []) if one.end <= HEALTHY and one.verdict in NAMES[1:]]
+        confident += bool(wrong)
+    assert confident == 0
