@@ -32,6 +32,7 @@ from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.compile.folding import folding
 from core.compile.instructions import address_of, call
+from core.compile.keeping import SLICE, keeping, sorting
 from core.compile.machine import WIDTH
 from core.kernel import kernel
 from core.ports import RESERVED, TICK, TIME_MS
@@ -54,9 +55,12 @@ def run(
     folds: Words,
     folded: IntArray,
     sizes: IntArray,
+    keep: int,
+    sort: int,
     rows: FloatArray,
     columns: IntArray,
     trace: FloatArray,
+    shape: IntArray,
     trip: int,
 ) -> int:
     """Run up to ``n`` ticks of all boards; return how many ran, fewer when a board trips at the last of them.
@@ -69,13 +73,19 @@ def run(
         Address of the code that folds a tick (``core.compile.folding``).
     folds, folded, sizes : ndarray
         The folds, the places of the outputs that count, and how many these are and all outputs.
+    keep, sort : int
+        Addresses of the code that keeps signals of a tick, and sorts a slice of them (``core.compile.keeping``).
     rows, columns : ndarray
-        Where signals are kept, shape (WIDTH, kept, WIDTH), and their places.
+        Where signals are kept, shape (SLICE, kept, WIDTH), and their places.
     trace : ndarray, shape (kept, WIDTH, ticks)
-        Where they go, sorted by board, ``WIDTH`` ticks at a time; the last few ticks stay in ``rows``.
+        Where they go, sorted by board, a slice of ticks at a time; the ticks after the last slice stay in ``rows``.
+    shape : ndarray
+        The number of signals kept, and of ticks in the trace.
     """
     p_address, s_address, w_address, io_address = address_of(p), address_of(s), address_of(w), address_of(io)
     fold_address, folded_address, size_address = address_of(folds), address_of(folded), address_of(sizes)
+    row_address, column_address, trace_address = address_of(rows), address_of(columns), address_of(trace)
+    shape_address, row_size = address_of(shape), 8 * WIDTH * len(columns)
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
@@ -83,14 +93,10 @@ def run(
             w[TIME_MS, k] = tick * dt_ms
         walk(table, tick, WIDTH, p_address, s_address, w_address, io_address)
         call(fold, w_address, fold_address, folded_address, size_address)
-        row = i % WIDTH
-        for c in range(len(columns)):
-            rows[row, c] = w[columns[c]]
-        if row == WIDTH - 1:
-            for c in range(len(columns)):
-                for k in range(WIDTH):
-                    for t in range(WIDTH):
-                        trace[c, k, tick - row + t] = rows[t, c, k]
+        row = tick % SLICE
+        call(keep, w_address, row_address + row * row_size, column_address, shape_address)
+        if row == SLICE - 1:
+            call(sort, row_address, trace_address + 8 * (tick - row), column_address, shape_address)
         tripped = False
         for k in range(WIDTH):
             tripped = tripped or w[trip, k] != 0.0
@@ -135,7 +141,8 @@ class Abreast:
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
         self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
         self._trace = np.empty((len(columns), WIDTH, samples))
-        self._rows = np.empty((WIDTH, len(columns), WIDTH))
+        self._rows = np.empty((SLICE, len(columns), WIDTH))
+        self._shape = np.array([len(columns), samples], dtype=np.int64)
         self._folded = pattern.folded + RESERVED
         self._sizes = np.array([len(self._folded), self._folds.shape[1]], dtype=np.int64)
         self._fold = folding((A, B), SHIFTS, NONE, RESERVED)
@@ -220,6 +227,8 @@ class Abreast:
             self._silence(tripped)
         for board in self._leaders:
             board.tell_faults()
+        rest = self.tick % SLICE
+        self._trace[:, :, self.tick - rest : self.tick] = self._rows[:rest].transpose(1, 2, 0)
         return [not gone for gone in tripped]
 
     def trace(self, lane: int) -> dict[str, FloatArray]:
@@ -228,11 +237,8 @@ class Abreast:
 
     def _run(self, n: int) -> int:
         arrays = (self._table, self._p, self._s, self._w, self._io, self._fold, self._folds, self._folded, self._sizes)
-        kept = self._rows, self._columns, self._trace
-        ran = int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
-        end, rest = self.tick + ran, ran % WIDTH
-        self._trace[:, :, end - rest : end] = self._rows[:rest].transpose(1, 2, 0)
-        return ran
+        kept = keeping(), sorting(), self._rows, self._columns, self._trace, self._shape
+        return int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
 
     def _silence(self, tripped: list[bool]) -> None:
         """Let the lane of a tripped board follow the lane of a board that has not tripped."""

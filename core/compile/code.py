@@ -21,7 +21,7 @@ from core.compile.translate import Translation
 from core.kernel_cache import Content, bytecode, compiled_here, get, key, put
 
 MOST_PASSES = 30
-OTHERS = {"core.compile.folding", "core.compile.segment"}
+OTHERS = {"core.compile.folding", "core.compile.keeping", "core.compile.segment"}
 """Modules beside the translator, which some processes load and some do not."""
 POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
 

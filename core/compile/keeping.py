@@ -1,0 +1,70 @@
+"""Vector code that keeps signals of boards abreast, and sorts what was kept by board."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from llvmlite import ir
+
+from core.compile.arrays import counted
+from core.compile.code import PLACES, POINTER, begun
+from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.numbers import DOUBLE, I64
+
+SLICE = 64
+"""Ticks that are sorted together: a board's numbers of a signal then fill several lines of the cache in a row."""
+EDGE = 8
+"""Rows and columns of a square that is turned in registers."""
+HALF = EDGE // 2
+LOW, HIGH = ([first + i + side for i in range(HALF) for side in (0, EDGE)] for first in (0, HALF))
+"""Numbers of two vectors in turn: of their lower halves, and of their upper halves."""
+BOARDS, LINE = ir.VectorType(DOUBLE, WIDTH), ir.VectorType(DOUBLE, EDGE)
+
+
+@cache
+def keeping() -> int:
+    """Return where the C function is that keeps signals of a tick.
+
+    It takes four pointers, as steps do: to all signals, to the room for those kept, to their places, and to how many
+    they are.
+    """
+    module, builder, (signals, room, places, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
+    with counted(builder, builder.load(sizes)) as number:
+        source = _at(builder, signals, BOARDS, (builder.load(builder.gep(places, [number])), WIDTH))
+        builder.store(builder.load(source, align=8), _at(builder, room, BOARDS, (number, WIDTH)), align=8)
+    builder.ret_void()
+    return loaded(compiled(str(module)))
+
+
+@cache
+def sorting() -> int:
+    """Return where the C function is that sorts by board the signals kept in a slice.
+
+    It takes four pointers: to what was kept, an array of shape (``SLICE``, kept, ``WIDTH``); to the first tick of the
+    slice in a trace of shape (kept, ``WIDTH``, ticks); to nothing; and to how many signals and ticks the trace has.
+    """
+    module, builder, (rows, trace, _, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
+    kept, ticks = (builder.load(builder.gep(sizes, [ir.Constant(I64, number)])) for number in range(2))
+    across = builder.mul(kept, ir.Constant(I64, WIDTH))
+    orders = [ir.Constant(ir.VectorType(ir.IntType(32), EDGE), order) for order in (LOW, HIGH)]
+    with counted(builder, kept) as column, counted(builder, ir.Constant(I64, SLICE), EDGE) as tick:
+        for board in range(0, WIDTH, EDGE):
+            corner = _at(builder, rows, DOUBLE, (tick, across), (column, WIDTH), (board, 1))
+            lines = [builder.load(_at(builder, corner, LINE, (i, across)), align=8) for i in range(EDGE)]
+            for _ in range(EDGE.bit_length() - 1):
+                pairs = zip(lines[:HALF], lines[HALF:], strict=True)
+                lines = [builder.shuffle_vector(*pair, order) for pair in pairs for order in orders]
+            corner = _at(builder, trace, DOUBLE, (column, builder.mul(ticks, ir.Constant(I64, WIDTH))), (tick, 1))
+            for i, line in enumerate(lines):
+                builder.store(line, _at(builder, corner, LINE, (board + i, ticks)), align=8)
+    builder.ret_void()
+    return loaded(compiled(str(module)))
+
+
+def _at(builder: ir.IRBuilder, base: Any, kind: Any, *steps: tuple[Any, Any]) -> Any:
+    """Return a pointer that is some steps of some sizes behind another."""
+    for step in steps:
+        number, size = (ir.Constant(I64, one) if isinstance(one, int) else one for one in step)
+        base = builder.gep(base, [builder.mul(number, size)])
+    return builder.bitcast(base, kind.as_pointer())
