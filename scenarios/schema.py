@@ -15,7 +15,7 @@ from core.board.condition import parse_condition
 from core.board.document import Document, has, says_the_same
 from core.board.ensemble import twin_specs
 from core.board.packages import carried
-from core.board.parse import parse
+from core.board.parse import changed, parse
 from core.board.spec import Spec, fields
 from core.board.wiring import signals_of
 from core.errors import InputError, from_validation, short, unknown, unknown_field
@@ -107,8 +107,7 @@ class Scenario:
         if foreign:
             raise unknown_field(foreign[0], (*HEAD, *allowed), foreign[0])
         self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
-        if (self.samples or 0) > MAX_SAMPLES:
-            raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
+        self._check_length()
         if (beside := self.head.metrics.beside) and beside not in self.spec.diagnosers:
             raise unknown("diagnoser", beside, self.spec.diagnosers, "metrics.beside")
         self.twins = twin_specs(self.bench)
@@ -123,6 +122,10 @@ class Scenario:
             for path in entry.fitted:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
+
+    def _check_length(self) -> None:
+        if (self.samples or 0) > MAX_SAMPLES:
+            raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
 
     def _checked(self, event: Document) -> list[Command]:
         """Return the commands of an event, which could be carried out on this bench."""
@@ -161,6 +164,21 @@ class Scenario:
             Naming the field, or the line of malformed TOML.
         """
         return cls(text if isinstance(text, dict) else read_toml(text, "scenario"), like)
+
+    def with_numbers(self, document: Document, values: dict[str, float]) -> Scenario:
+        """Return the scenario of a document that has other numbers of the bench at some paths, and is alike otherwise.
+
+        Raises
+        ------
+        InputError
+            When it is not valid; the field may be named as the normal form has it.
+        """
+        found = object.__new__(Scenario)
+        bench = {key: value for key, value in document.items() if key not in HEAD}
+        vars(found).update(vars(self), document=document, bench=bench, spec=changed(self.spec, values))
+        found.twins = twin_specs(bench)
+        found._check_length()
+        return found
 
     @property
     def id(self) -> str:

@@ -80,31 +80,28 @@ def _choices_of(layout: RecordLayout) -> list[int]:
     return found
 
 
-DERIVED = {name: fact.fget for name, fact in vars(Context).items() if isinstance(fact, property) and fact.fget}
-"""Facts that follow from others, which are the facts read."""
+class _Fact:
+    """A fact of a bench, which is put among the attributes of the object that it is first read from."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, noting: Any, _: type) -> Any:
+        value = vars(noting)[self._name] = getattr(vars(noting)[""], self._name)
+        return value
 
 
-class _Noting(Context):
-    """The facts of a bench, with a note of each fact read; a unit that a document carries accepts only a `Context`."""
-
-    read: set[str]
-
-    def __init__(self, context: Context) -> None:
-        vars(self).update(_context=context, read=set[str]())
-
-    def __getattribute__(self, name: str) -> Any:
-        if name.startswith("_") or name == "read":
-            return object.__getattribute__(self, name)
-        if name in DERIVED:
-            return DERIVED[name](self)
-        self.read.add(name)
-        return getattr(self._context, name)
+_Noting = type("_Noting", (Context,), {fact: _Fact(fact) for fact in FACTS})
+"""The facts of a bench, whose attributes are the facts read; a unit of a document accepts only a `Context`."""
 
 
 def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray, set[str]]:
     """Return the parameters and the first state of a block, and which facts of the bench they are made of."""
-    noting: Any = _Noting(spec.context(instance.every, instance.axis))
-    return instance.packed(noting), instance.block.initial(instance.params, noting), noting.read
+    noting: Any = object.__new__(_Noting)
+    read = vars(noting)
+    read[""] = spec.context(instance.every, instance.axis)
+    made = instance.packed(noting), instance.block.initial(instance.params, noting)
+    return *made, read.keys() - {""}
 
 
 def unlike(one: Context, other: Context) -> set[str]:

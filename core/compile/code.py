@@ -99,6 +99,18 @@ def renew() -> None:
             _addresses[block, width] = loaded(piece.kept())
 
 
+def helper(write: Callable[..., ir.Module], *arguments: Any) -> int:
+    """Return the address of a C function beside the steps, by the function that writes its module."""
+    own = inspect.getsource(sys.modules[write.__module__])
+    piece = Piece(
+        f"{write.__name__}-{write.__module__}",
+        lambda _: digest(own, compiler(), arguments),
+        lambda: str(write(*arguments)),
+        loops=False,
+    )
+    return loaded(piece.kept())
+
+
 def step(block: Block, width: int = 1) -> Piece:
     """Return the step of a block, for so many boards."""
     name = f"step-{width}-{block.__module__}"

@@ -8,8 +8,8 @@ from typing import Any
 from llvmlite import ir
 
 from core.compile.arrays import counted
-from core.compile.code import PLACES, POINTER, begun
-from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.code import PLACES, POINTER, begun, helper
+from core.compile.machine import WIDTH
 from core.compile.numbers import DOUBLE, I64
 
 SLICE = 64
@@ -24,7 +24,18 @@ BOARDS, LINE = ir.VectorType(DOUBLE, WIDTH), ir.VectorType(DOUBLE, EDGE)
 
 @cache
 def keeping() -> int:
-    """Return where the C function is that keeps signals of a tick.
+    """Return where the C function is that keeps signals of a tick."""
+    return helper(keeps)
+
+
+@cache
+def sorting() -> int:
+    """Return where the C function is that sorts by board the signals kept in a slice."""
+    return helper(sorts)
+
+
+def keeps() -> ir.Module:
+    """Write the function that keeps signals of a tick.
 
     It takes four pointers, as steps do: to all signals, to the room for those kept, to their places, and to how many
     they are.
@@ -34,12 +45,11 @@ def keeping() -> int:
         source = _at(builder, signals, BOARDS, (builder.load(builder.gep(places, [number])), WIDTH))
         builder.store(builder.load(source, align=8), _at(builder, room, BOARDS, (number, WIDTH)), align=8)
     builder.ret_void()
-    return loaded(compiled(str(module)))
+    return module
 
 
-@cache
-def sorting() -> int:
-    """Return where the C function is that sorts by board the signals kept in a slice.
+def sorts() -> ir.Module:
+    """Write the function that sorts by board the signals kept in a slice.
 
     It takes four pointers: to what was kept, an array of shape (``SLICE``, kept, ``WIDTH``); to the first tick of the
     slice in a trace of shape (kept, ``WIDTH``, ticks); to nothing; and to how many signals and ticks the trace has.
@@ -59,7 +69,7 @@ def sorting() -> int:
             for i, line in enumerate(lines):
                 builder.store(line, _at(builder, corner, LINE, (board + i, ticks)), align=8)
     builder.ret_void()
-    return loaded(compiled(str(module)))
+    return module
 
 
 def _at(builder: ir.IRBuilder, base: Any, kind: Any, *steps: tuple[Any, Any]) -> Any:

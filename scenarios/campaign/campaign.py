@@ -19,6 +19,7 @@ from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.outcome import RunOutcome
+from scenarios.campaign.points import Point
 from scenarios.campaign.progress import Cancelled, tell
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.todo import Remaining, Run
@@ -82,21 +83,22 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     _check_version(version)
     began = time.perf_counter()
     read: dict[int, Scenario | InputError] = {}
-    like: Scenario | None = None
+    last: tuple[Point, Scenario] | None = None
     for _, point, _ in runs:
         if id(point) not in read:
             try:
-                read[id(point)] = like = Scenario.load(point.document, like=like)
+                read[id(point)] = scenario = point.read(last)
+                last = point, scenario
             except InputError as error:
                 read[id(point)] = error
     good: list[tuple[str, tuple[Scenario, int]]] = []
     found: list[tuple[str, RunOutcome]] = []
     for key, point, seed in runs:
-        scenario = read[id(point)]
-        if isinstance(scenario, InputError):
-            found.append((key, RunOutcome(seed=seed, error=str(scenario))))
+        one = read[id(point)]
+        if isinstance(one, InputError):
+            found.append((key, RunOutcome(seed=seed, error=str(one))))
         else:
-            good.append((key, (scenario, seed)))
+            good.append((key, (one, seed)))
     made = outcomes([run for _, run in good], tell)
     found += zip([key for key, _ in good], made, strict=True)
     return [(key, one.model_dump_json()) for key, one in found], (time.perf_counter() - began) / len(runs)
