@@ -13,6 +13,7 @@ from pydantic import BaseModel, computed_field
 from core.block import FloatArray, IntArray
 from core.board.board import Board
 from core.board.commands import Trip
+from core.compile.instructions import bits_of
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
@@ -150,22 +151,22 @@ def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: in
     ndarray of int64, shape (2, thresholds + 1)
     """
     counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
-    _count(np.maximum(fault, LEAST) / np.maximum(none, LEAST), truth, healthy, odds, counts)
+    _count(fault, none, truth, healthy, np.concatenate(([math.nan], odds, [math.nan])), counts)
     return counts
 
 
 @kernel
-def _count(ratio: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray, counts: IntArray) -> None:
-    count = len(odds)
+def _count(
+    fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray, counts: IntArray
+) -> None:
+    last = len(odds) - 2
     # the bits of a number are nearly proportional to its logarithm: the bin from them is the right one or next to it
-    bits, ends = ratio.view(np.int64), odds.view(np.int64)
-    share = (count - 1) / (ends[-1] - ends[0])
-    for i in range(len(ratio)):
-        if not ratio[i] > 0.0:
-            ratio[i] = 1.0
-        found = min(max(int((bits[i] - ends[0]) * share) + 1, 0), count)
-        while found > 0 and ratio[i] < odds[found - 1]:
-            found -= 1
-        while found < count and ratio[i] >= odds[found]:
-            found += 1
+    first, share = bits_of(odds[1]), (last - 1) / (bits_of(odds[last]) - bits_of(odds[1]))
+    for i in range(len(fault)):
+        over = LEAST if fault[i] < LEAST else fault[i]
+        under = LEAST if none[i] < LEAST else none[i]
+        ratio = over / under
+        ratio = ratio if ratio > 0.0 else 1.0
+        found = min(max(int((bits_of(ratio) - first) * share) + 1, 0), last)
+        found += (1 if ratio >= odds[found + 1] else 0) - (1 if ratio < odds[found] else 0)
         counts[0 if truth[i] == healthy else 1, found] += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections import Counter
 from collections.abc import Iterable
 from typing import Any
@@ -12,6 +13,7 @@ import numpy as np
 from core.block import BoolArray, FloatArray
 from core.board.board import Board
 from core.board.commands import SetValues
+from core.kernel import kernel
 from scenarios.measure.blocks import blocks
 from scenarios.measure.stretch import Stretch
 
@@ -55,16 +57,27 @@ def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     columns = trace["sensor.displacement"][start:], trace["plant.displacement"][start:]
     ambiguity = _ambiguity_um(board)
     whole = whole_periods((measured - true for measured, true in blocks(*columns)), ambiguity)
-    lost, squares = 0, 0.0
+    good, squares = 0, 0.0
     for measured, true in blocks(*columns):
-        error = measured - true
-        bad = lost_samples(error, ambiguity, whole)
-        good = error[~bad] - whole * ambiguity
-        lost, squares = lost + int(np.count_nonzero(bad)), squares + float(np.sum(good * good))
-    figures = {"sensing.direction_lost_fraction": lost / (samples - start)}
-    if lost < samples - start:
-        figures["sensing.rms_error_nm"] = 1e3 * math.sqrt(squares / (samples - start - lost))
+        room = np.empty(len(true))
+        count = _good_squares(measured, true, whole * ambiguity, 0.5 * ambiguity or sys.float_info.max, room)
+        good, squares = good + count, squares + float(np.sum(room[:count]))
+    figures = {"sensing.direction_lost_fraction": (samples - start - good) / (samples - start)}
+    if good:
+        figures["sensing.rms_error_nm"] = 1e3 * math.sqrt(squares / good)
     return figures
+
+
+@kernel
+def _good_squares(measured: FloatArray, true: FloatArray, offset: float, most: float, squares: FloatArray) -> int:
+    """Write the squares of the errors that are not too large, less an offset, one after another; return how many."""
+    count = 0
+    for i in range(len(true)):
+        error = measured[i] - true[i] - offset
+        if abs(error) <= most:
+            squares[count] = error * error
+            count += 1
+    return count
 
 
 def _ambiguity_um(board: Board) -> float:
