@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.board import lost, program, steps
+from core.board import lost, program
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
@@ -221,7 +221,7 @@ class Abreast:
             for board in self._leaders:
                 board.used |= {*board.spec.driving.values(), board.spec.measuring}
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
-            if self.tick == look and not np.isfinite(self._s).all():
+            if self.tick == look and not np.isfinite(self._s[self._states]).all():
                 stopped |= [bool(lost.lost(board.wiring, board.spec)) for board in self.boards]
             tripped = [before or now for before, now in zip(tripped, stopped.tolist(), strict=True)]
             self._silence(tripped)
@@ -268,7 +268,11 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [steps.address(first, row, WIDTH) for row in rows]
+        self._table[:, program.ADDRESS] = [self._pattern.address(row) for row in rows]
+        runs = np.zeros(len(first.table), dtype=np.bool_)
+        runs[rows] = True
+        sizes = np.diff(first.table[:, program.S_OFFSET], append=len(self._s))
+        self._states = np.flatnonzero(np.repeat(runs, sizes))
 
 
 def _apart(wiring: Wiring) -> Wiring:

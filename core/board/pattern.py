@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from core.block import BlockParams, Context, FloatArray, IntArray
+from core.block import BlockParams, Context, FloatArray, IntArray, Oscillator
+from core.board import steps
 from core.board.board import Board
 from core.board.commands import SetValues
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
 from core.board.spec import Spec
+from core.compile.machine import WIDTH
 from core.record import RecordLayout
 
 FACTS = [fact.name for fact in fields(Context)]
@@ -59,6 +61,13 @@ class Pattern:
         # a block that rests is packed when it starts to run
         packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
+        self._addresses: dict[int, int] = {}
+
+    def address(self, row: int) -> int:
+        """Return the address of the step of a row, for all boards."""
+        if row not in self._addresses:
+            self._addresses[row] = steps.address(self.board.wiring, row, WIDTH)
+        return self._addresses[row]
 
     def _choices(self) -> IntArray:
         """Return the places of the numbers that boards abreast must share."""
@@ -116,10 +125,12 @@ def is_alike(one: Any, other: Any) -> bool:
         return True
     if type(one) is float and one != 0.0:
         return bool(one == other)
-    if isinstance(one, BlockParams):
+    if isinstance(one, BlockParams | Oscillator):
         return type(one) is type(other) and is_alike(vars(one), vars(other))
     if isinstance(one, dict):
         return one.keys() == other.keys() and all(is_alike(value, other[name]) for name, value in one.items())
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(is_alike, one, other))
     return bool(one == other) and repr(one) == repr(other)
 
 

@@ -16,13 +16,14 @@ from core.board.board import Board
 from core.board.changes import check
 from core.board.commands import MakeSafe
 from core.board.lane import Lane
-from core.board.observer import cautions, warnings
+from core.board.observer import warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import PendingCommand, PendingQueue
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.outcome import RunOutcome, outcome, summed
-from scenarios.run import DEFAULT_SAMPLES, figures
+from scenarios.measure.metrics import measure
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from scenarios.signals import watched
 
@@ -119,8 +120,9 @@ def _together(
     for lane, number in enumerate(chosen):
         if came[lane]:
             scenario, board, trace = runs[number][0], boards.boards[lane], boards.trace(lane)
+            metrics = measure(board, trace, scenario.head.metrics)
             said = warned(scenario, board, told, trace)
-            found[number] = summed(scenario, board, figures(board, trace, scenario), board.digest(), trace, said)
+            found[number] = summed(scenario, board, metrics, board.digest(), trace, said)
     elapsed = (time.perf_counter() - began) / len(chosen)
     for outcome_ in found.values():
         outcome_.elapsed_s = elapsed
@@ -136,7 +138,7 @@ def running_warnings(board: Board) -> dict[str, str]:
 
 def warned(scenario: Scenario, board: Lane, told: dict[str, str], trace: dict[str, FloatArray]) -> list[str]:
     """Return the warnings that a run alone would have in its log, each once, in the order in which they came."""
-    found = [(tick, text) for tick, spec in board.specs for text in cautions(spec)]
+    found = [(tick, text) for tick, spec in board.specs for text in spec.cautions]
     for name, text in told.items():
         if (risen := trace[name] > 0.0).any():
             found.append((int(np.argmax(risen)), text))
