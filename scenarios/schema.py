@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any, Literal
 
@@ -71,12 +72,8 @@ class Scenario:
 
     Attributes
     ----------
-    document : dict
-        The document it was read from, with the installed packages whose blocks it names.
     head : Head
         Title, length, events, expectations.
-    bench : dict
-        The part of the document that describes the bench.
     spec : Spec
         The checked bench; every board of the scenario is built from it.
     twins : dict of Spec
@@ -93,7 +90,6 @@ class Scenario:
         check_admitted(document)
         self.document = document = carried(_with_open_ends(without_address(document)))
         head = {key: value for key, value in document.items() if key in HEAD}
-        self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         self._head, known = head, like._head if like is not None else {}
         is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())
         try:
@@ -165,8 +161,10 @@ class Scenario:
         """
         return cls(text if isinstance(text, dict) else read_toml(text, "scenario"), like)
 
-    def with_numbers(self, document: Document, values: dict[str, float]) -> Scenario:
-        """Return the scenario of a document that has other numbers of the bench at some paths, and is alike otherwise.
+    def with_numbers(self, values: dict[str, float], write: Callable[[], Document]) -> Scenario:
+        """Return the scenario that has other numbers of the bench at some paths, and is alike otherwise.
+
+        ``write`` returns its document when it is first asked for.
 
         Raises
         ------
@@ -174,11 +172,22 @@ class Scenario:
             When it is not valid; the field may be named as the normal form has it.
         """
         found = object.__new__(Scenario)
-        bench = {key: value for key, value in document.items() if key not in HEAD}
-        vars(found).update(vars(self), document=document, bench=bench, spec=changed(self.spec, values))
-        found.twins = twin_specs(bench)
+        vars(found).update(vars(self), spec=changed(self.spec, values), _write=write)
+        for name in ("document", "bench"):
+            vars(found).pop(name, None)
+        found.twins = twin_specs(found.bench) if self.twins else self.twins
         found._check_length()
         return found
+
+    @cached_property
+    def document(self) -> Document:
+        """The document it was read from, with the installed packages whose blocks it names."""
+        return self._write()
+
+    @cached_property
+    def bench(self) -> Document:
+        """The part of the document that describes the bench."""
+        return {key: value for key, value in self.document.items() if key not in HEAD}
 
     @property
     def id(self) -> str:

@@ -7,7 +7,7 @@ that trips, or whose commands change which blocks run, cannot stay: it runs alon
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -37,6 +37,7 @@ from core.compile.machine import WIDTH
 from core.kernel import kernel
 from core.ports import RESERVED, TICK, TIME_MS
 
+NOTHING: Mapping[str, Sequence[str]] = {}
 ALIGNMENT = 8
 """Numbers of a cache line, at which rows of lanes begin."""
 
@@ -60,6 +61,7 @@ def run(
     rows: FloatArray,
     columns: IntArray,
     trace: FloatArray,
+    ends: IntArray,
     shape: IntArray,
     trip: int,
 ) -> int:
@@ -75,17 +77,18 @@ def run(
         The folds, the places of the outputs that count, and how many these are and all outputs.
     keep, sort : int
         Addresses of the code that keeps signals of a tick, and sorts a slice of them (``core.compile.keeping``).
-    rows, columns : ndarray
-        Where signals are kept, shape (SLICE, kept, WIDTH), and their places.
+    rows, columns, ends : ndarray
+        Where signals and sums are kept, shape (SLICE, kept, WIDTH), the places of the signals, and the number of rows
+        followed by where the places of each begin and end.
     trace : ndarray, shape (kept, WIDTH, ticks)
         Where they go, sorted by board, a slice of ticks at a time; the ticks after the last slice stay in ``rows``.
     shape : ndarray
-        The number of signals kept, and of ticks in the trace.
+        How many are kept, and the ticks of the trace.
     """
     p_address, s_address, w_address, io_address = address_of(p), address_of(s), address_of(w), address_of(io)
     fold_address, folded_address, size_address = address_of(folds), address_of(folded), address_of(sizes)
     row_address, column_address, trace_address = address_of(rows), address_of(columns), address_of(trace)
-    shape_address, row_size = address_of(shape), 8 * WIDTH * len(columns)
+    end_address, shape_address, row_size = address_of(ends), address_of(shape), 8 * WIDTH * rows.shape[1]
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
@@ -94,7 +97,7 @@ def run(
         walk(table, tick, WIDTH, p_address, s_address, w_address, io_address)
         call(fold, w_address, fold_address, folded_address, size_address)
         row = tick % SLICE
-        call(keep, w_address, row_address + row * row_size, column_address, shape_address)
+        call(keep, w_address, row_address + row * row_size, column_address, end_address)
         if row == SLICE - 1:
             call(sort, row_address, trace_address + 8 * (tick - row), column_address, shape_address)
         tripped = False
@@ -120,6 +123,8 @@ class Abreast:
         The signals to keep.
     samples : int
         Ticks of the longest run.
+    sums : mapping
+        The sums of signals to keep in addition, by name.
 
     Raises
     ------
@@ -134,19 +139,22 @@ class Abreast:
         pending: Sequence[PendingQueue],
         columns: Sequence[str],
         samples: int,
+        sums: Mapping[str, Sequence[str]] = NOTHING,
     ) -> None:
         self._pattern = pattern
         wiring = pattern.board.wiring
         self._p, self._s, self._w = (_lanes(array) for array in (wiring.p, wiring.s, wiring.w))
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
-        self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
-        self._trace = np.empty((len(columns), WIDTH, samples))
-        self._rows = np.empty((SLICE, len(columns), WIDTH))
-        self._shape = np.array([len(columns), samples], dtype=np.int64)
+        parts: dict[str, Sequence[str]] = {**{name: (name,) for name in columns}, **sums}
+        self._columns = np.array([wiring.index[name] for own in parts.values() for name in own], dtype=np.int64)
+        self._ends = np.array([len(parts), *np.cumsum([0, *map(len, parts.values())])], dtype=np.int64)
+        self._trace = np.empty((len(parts), WIDTH, samples))
+        self._rows = np.empty((SLICE, len(parts), WIDTH))
+        self._shape = np.array([len(parts), samples], dtype=np.int64)
         self._folded = pattern.folded + RESERVED
         self._sizes = np.array([len(self._folded), self._folds.shape[1]], dtype=np.int64)
         self._fold = folding((A, B), SHIFTS, NONE, RESERVED)
-        self._names, self._trip = list(columns), wiring.trip
+        self._names, self._trip = list(parts), wiring.trip
         self.boards: list[Lane] = []
         self._leaders: list[Lane] = []
         self._read, self._packed = {**pattern.read}, set[int]()
@@ -221,7 +229,7 @@ class Abreast:
             for board in self._leaders:
                 board.used |= {*board.spec.driving.values(), board.spec.measuring}
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
-            if self.tick == look and not np.isfinite(self._s[self._states]).all():
+            if self.tick == look and not np.isfinite(self._s).all():
                 stopped |= [bool(lost.lost(board.wiring, board.spec)) for board in self.boards]
             tripped = [before or now for before, now in zip(tripped, stopped.tolist(), strict=True)]
             self._silence(tripped)
@@ -232,12 +240,12 @@ class Abreast:
         return [not gone for gone in tripped]
 
     def trace(self, lane: int) -> dict[str, FloatArray]:
-        """Return the signals kept of a board, by name."""
+        """Return the signals and sums kept of a board, by name."""
         return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
 
     def _run(self, n: int) -> int:
         arrays = (self._table, self._p, self._s, self._w, self._io, self._fold, self._folds, self._folded, self._sizes)
-        kept = keeping(), sorting(), self._rows, self._columns, self._trace, self._shape
+        kept = keeping(), sorting(), self._rows, self._columns, self._trace, self._ends, self._shape
         return int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
 
     def _silence(self, tripped: list[bool]) -> None:
@@ -269,10 +277,6 @@ class Abreast:
         self._io = first.io
         self._table = first.table[rows]
         self._table[:, program.ADDRESS] = [self._pattern.address(row) for row in rows]
-        runs = np.zeros(len(first.table), dtype=np.bool_)
-        runs[rows] = True
-        sizes = np.diff(first.table[:, program.S_OFFSET], append=len(self._s))
-        self._states = np.flatnonzero(np.repeat(runs, sizes))
 
 
 def _apart(wiring: Wiring) -> Wiring:

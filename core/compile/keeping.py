@@ -1,4 +1,4 @@
-"""Vector code that keeps signals of boards abreast, and sorts what was kept by board."""
+"""Vector code that keeps signals of boards abreast or sums of them, and sorts what was kept by board."""
 
 from __future__ import annotations
 
@@ -35,15 +35,26 @@ def sorting() -> int:
 
 
 def keeps() -> ir.Module:
-    """Write the function that keeps signals of a tick.
+    """Write the function that keeps signals of a tick, or sums of signals.
 
-    It takes four pointers, as steps do: to all signals, to the room for those kept, to their places, and to how many
-    they are.
+    It takes four pointers, as steps do: to all signals, to the room for what is kept, to the places of the signals, and
+    to how many are kept, followed by where the places of each end.
     """
     module, builder, (signals, room, places, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
+
+    def signal(at: Any) -> Any:
+        source = _at(builder, signals, BOARDS, (builder.load(builder.gep(places, [at])), WIDTH))
+        return builder.load(source, align=8)
+
+    total = builder.alloca(BOARDS)
     with counted(builder, builder.load(sizes)) as number:
-        source = _at(builder, signals, BOARDS, (builder.load(builder.gep(places, [number])), WIDTH))
-        builder.store(builder.load(source, align=8), _at(builder, room, BOARDS, (number, WIDTH)), align=8)
+        start, end = (builder.load(_at(builder, sizes, I64, (number, 1), (more, 1))) for more in (1, 2))
+        builder.store(signal(start), total)
+        others = builder.sub(builder.sub(end, start), ir.Constant(I64, 1))
+        with counted(builder, others) as other:
+            added = signal(builder.add(builder.add(start, other), ir.Constant(I64, 1)))
+            builder.store(builder.fadd(builder.load(total), added), total)
+        builder.store(builder.load(total), _at(builder, room, BOARDS, (number, WIDTH)), align=8)
     builder.ret_void()
     return module
 

@@ -112,24 +112,30 @@ def summed(
 
 def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatArray]) -> Diagnosis:
     counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
-    params: Any = board.diagnosers[name].params
-    healthy = next(
-        (position for position, item in enumerate(params.hypotheses) if item.is_nominal),
-        None,
-    )
-    columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
-    if healthy is None or columns[0] not in trace or board.tick == 0:
+    healthy, none, faults = odds_of(board, name, scores.names)
+    if healthy is None or none not in trace or board.tick == 0:
         return counted
     counts = np.zeros((2, len(ODDS) + 1), dtype=np.int64)
-    for *probabilities, truth in blocks(*(trace[column] for column in columns), trace[f"{name}.truth"]):
-        fault = np.zeros(len(truth))
-        for position, probability in enumerate(probabilities):
-            if position != healthy:
-                fault += probability
-        others = np.ascontiguousarray(probabilities[healthy]), np.ascontiguousarray(truth)
-        counts += evidence(fault, *others, healthy, ODDS)
+    summed = [fault_of(name)] if fault_of(name) in trace else faults
+    for truth, no_fault, *probabilities in blocks(*(trace[column] for column in (f"{name}.truth", none, *summed))):
+        fault = sum(probabilities[1:], probabilities[0]) if probabilities else np.zeros(len(truth))
+        arrays = (np.ascontiguousarray(array) for array in (fault, no_fault, truth))
+        counts += evidence(*arrays, healthy, ODDS)
     counted.healthy, counted.faulty = counts.tolist()
     return counted
+
+
+def fault_of(name: str) -> str:
+    """Return under which name a trace has the probability that a diagnoser gives to all faults together."""
+    return f"{name}.fault"
+
+
+def odds_of(board: Board, name: str, hypotheses: list[str]) -> tuple[int | None, str, list[str]]:
+    """Return which hypothesis of a diagnoser is a healthy device, its probability, and the others."""
+    params: Any = board.diagnosers[name].params
+    healthy = next((position for position, item in enumerate(params.hypotheses) if item.is_nominal), None)
+    columns = [f"{name}.probability.{hypothesis}" for hypothesis in hypotheses]
+    return healthy, columns[healthy or 0], [*columns[: healthy or 0], *columns[(healthy or 0) + 1 :]]
 
 
 def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray) -> IntArray:

@@ -95,11 +95,10 @@ class Point:
             When its values give no valid scenario.
         """
         point, like = last or (None, None)
-        document = self.document
         if point is not None and like is not None and point.base is self.base and _are_numbers(point, self):
             with suppress(InputError):  # which does not name the field as it is written
-                return like.with_numbers(document, self.values)
-        return Scenario.load(document, like=like)
+                return like.with_numbers(self.values, lambda: self.document)
+        return Scenario.load(self.document, like=like)
 
 
 def _are_numbers(*points: Point) -> bool:
