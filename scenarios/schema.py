@@ -84,6 +84,8 @@ class Scenario:
         The commands of every event, in the order they take effect.
     """
 
+    _write: Callable[[], Document]
+
     def __init__(self, document: Document, like: Scenario | None = None) -> None:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")

@@ -119,8 +119,8 @@ def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatAr
     summed = [fault_of(name)] if fault_of(name) in trace else faults
     for truth, no_fault, *probabilities in blocks(*(trace[column] for column in (f"{name}.truth", none, *summed))):
         fault = sum(probabilities[1:], probabilities[0]) if probabilities else np.zeros(len(truth))
-        arrays = (np.ascontiguousarray(array) for array in (fault, no_fault, truth))
-        counts += evidence(*arrays, healthy, ODDS)
+        others = np.ascontiguousarray(no_fault), np.ascontiguousarray(truth)
+        counts += evidence(np.ascontiguousarray(fault), *others, healthy, ODDS)
     counted.healthy, counted.faulty = counts.tolist()
     return counted
 

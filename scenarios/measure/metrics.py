@@ -51,7 +51,8 @@ def fundamentals(signals: list[FloatArray], frequency_hz: float, dt_ms: float, f
     if len(signals[0]) > BLOCK:
         return [fundamental(signal, frequency_hz, dt_ms, first_tick) for signal in signals]
     found = np.empty((4, 2))
-    _weigh(_projection(frequency_hz, dt_ms, first_tick, len(signals[0])), *map(loaded, signals), found)
+    first, second, third, last = map(loaded, signals)
+    _weigh(_projection(frequency_hz, dt_ms, first_tick, len(first)), first, second, third, last, found)
     return [complex(*parts) for parts in found.tolist()]
 
 
