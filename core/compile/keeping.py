@@ -1,4 +1,4 @@
-"""Vector code that keeps signals of boards abreast or sums of them, and sorts what was kept by board."""
+"""Vector code that keeps signals of boards abreast or sums of them, and sorts them by board."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def sorting() -> int:
 def keeps() -> ir.Module:
     """Write the function that keeps signals of a tick, or sums of signals.
 
-    It takes four pointers, as steps do: to all signals, to the room for what is kept, to the places of the signals, and
-    to how many are kept, followed by where the places of each end.
+    It takes four pointers, as steps do: to all signals, to the room for the kept ones, to the places of the signals,
+    and to the number of kept ones, followed by where the places of each begin and end.
     """
     module, builder, (signals, room, places, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
 
@@ -62,8 +62,8 @@ def keeps() -> ir.Module:
 def sorts() -> ir.Module:
     """Write the function that sorts by board the signals kept in a slice.
 
-    It takes four pointers: to what was kept, an array of shape (``SLICE``, kept, ``WIDTH``); to the first tick of the
-    slice in a trace of shape (kept, ``WIDTH``, ticks); to nothing; and to how many signals and ticks the trace has.
+    It takes four pointers: to the kept signals, shape (``SLICE``, kept, ``WIDTH``); to the first tick of the slice in a
+    trace of shape (kept, ``WIDTH``, ticks); to nothing; and to the numbers of signals and ticks of the trace.
     """
     module, builder, (rows, trace, _, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
     kept, ticks = (builder.load(builder.gep(sizes, [ir.Constant(I64, number)])) for number in range(2))

@@ -29,7 +29,7 @@ def devices() -> tuple[Device, ...]:
 
 @cache
 def _documents() -> dict[str, dict[str, Any]]:
-    """Return what every device of the catalogue says, by id."""
+    """Return the document of every device of the catalogue, by id."""
     return {entry.id: entry.model_dump(exclude_none=True) for entry in devices()}
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 BATCH_S = 1.0
 """Computing time of a batch, long enough that the cost of sending it does not matter."""
-MAX_BATCH = 500
+MAX_BATCH = 512
 AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
@@ -265,7 +265,8 @@ class Campaign:
     def _batch(self, remaining: Remaining, width: int) -> list[Run]:
         """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together."""
         share = max(-(-remaining.waiting // (AHEAD * width)), WIDTH)
-        return remaining.take(min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share))
+        count = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share)
+        return remaining.take(count - count % WIDTH or count)
 
     def _submit_traced(self, executor: Processes | Cluster, first: Run) -> Future[tuple[Found, float, Any]]:
         """Hand over the run whose trace is kept, with the outcomes of the others."""
