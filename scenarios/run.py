@@ -17,7 +17,6 @@ from core.board.ensemble import Ensemble, make
 from core.board.fold import alike
 from core.board.hosted import NOTHING, Hosted
 from core.board.idle import leave_out_idle
-from core.board.observer import cautions
 from core.board.outside import Conclusion, Law
 from core.board.parse import changed
 from core.compile.segment import code_of, kept_code_of
@@ -297,6 +296,6 @@ def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResul
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(alike(figures.view(np.uint64)).tobytes()).hexdigest()
-    told = [*scenario.warnings, *cautions(board.spec)]
+    told = [*scenario.warnings, *board.spec.cautions]
     nothing = {one.name: np.empty(0) for one in kept}
     return RunResult(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)

@@ -90,7 +90,7 @@ def suited(spec: Spec) -> Spec:
     for name in spec.faults:
         if name not in present:
             raise InputError(f"{name} {misfit(spec.library.block('faults', name), plant)}", f"faults.{name}")
-    controllers, sensors = _for(pair, plant, spec.controllers), _for(pair, plant, spec.sensors)
+    controllers, sensors = _for(pair, spec.controllers), _for(pair, spec.sensors)
     if controllers is spec.controllers and sensors is spec.sensors:
         return spec
     return replace(spec, controllers=controllers, sensors=sensors)
@@ -109,10 +109,6 @@ def _refuse_held(spec: Spec) -> None:
             raise InputError(text, "drive.kind", f"hold the drive, or let {able} drive")
 
 
-def _for(pair: tuple[Oscillator, Oscillator], plant: type[Block], sections: dict[str, Section]) -> dict[str, Section]:
-    left = {
-        name: section
-        for name, section in sections.items()
-        if section.block.fits(plant.axes or ()) and not section.block.unsuited(*pair)
-    }
+def _for(pair: tuple[Oscillator, Oscillator], sections: dict[str, Section]) -> dict[str, Section]:
+    left = {name: section for name, section in sections.items() if not section.block.unsuited(*pair)}
     return sections if len(left) == len(sections) else left

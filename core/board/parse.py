@@ -101,9 +101,10 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     if before is not None and before.library is not library:
         before = None  # a name may mean another block
     known = before.document if before is not None else {}
+    differing = {key for key in (*doc, *known) if doc.get(key) is not known.get(key)}
 
     def same(*keys: str) -> bool:
-        return before is not None and all(doc.get(key) is known.get(key) for key in keys)
+        return before is not None and differing.isdisjoint(keys)
 
     tables = sections()
     loose = [key for key in doc if key not in tables]

@@ -136,6 +136,23 @@ class Spec:
         """Figures of the device in its environment, before any fault."""
         return self.device.metrics(*self.surroundings, self.context().temperature_k)
 
+    @property
+    def tones(self) -> list[tuple[float, float]]:
+        """Frequency and amplitude of the tones of the reference."""
+        waveform: Any = self.reference.block
+        found: list[tuple[float, float]] = waveform.tones(self.reference.params, self.context())
+        return found
+
+    @cached_property
+    def cautions(self) -> list[str]:
+        """Warnings about the loss by the blocks' assumptions of the voltage, at its strongest tone."""
+        _, hz = max((abs(volts), hz) for hz, volts in (*self.tones, (0.0, 0.0)))
+        found = []
+        for name, section in {**self.identifiers, **self.diagnosers}.items():
+            text = section.block.caution(section.params, self.context(self.turns(section)), hz)
+            found += [f"{name} {text}"] if text else []
+        return found
+
     def parts(self) -> Iterator[tuple[str, Section]]:
         """Yield every section with its name."""
         for name in ALONE:
@@ -211,7 +228,8 @@ class Spec:
         spec = object.__new__(Spec)
         frame = self.frame.model_copy(update={"seed": seed})
         document = {**self.document, "seed": seed}
-        vars(spec).update(vars(self), frame=frame, document=document, _contexts={}, _sown=self, quoted=self.quoted)
+        known = {"quoted": self.quoted, "cautions": self.cautions}
+        vars(spec).update(vars(self), frame=frame, document=document, _contexts={}, _sown=self, **known)
         return spec
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:

@@ -124,16 +124,19 @@ class KalmanBank(Bank):
         ticks = Tick(np.array(moving).T)  # each number of all models
         p.tick11[:n], p.tick12[:n], p.tick21[:n], p.tick22[:n] = ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22
         p.push1[:n], p.push2[:n] = ticks.push1, ticks.push2
-        p.middle1[:n], p.middle2[:n], p.end1[:n], p.end2[:n] = ticks.middle1, ticks.middle2, ticks.end1, ticks.end2
+        if context.analogue:
+            p.middle1[:n], p.middle2[:n], p.end1[:n], p.end2[:n] = ticks.middle1, ticks.middle2, ticks.end1, ticks.end2
         push = np.array([ticks.push1, ticks.push2]).T
         each = np.array([ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22]).T.reshape(n, 2, 2)
         caused = push[:, :, None] * push[:, None, :] * q
-        spans = [over_ticks(*own, context.every) for own in zip(each, caused, strict=True)]
-        phi, noise = (np.array(kind).T for kind in zip(*spans, strict=True))
+        if context.every > 1:
+            spans = [over_ticks(*own, context.every) for own in zip(each, caused, strict=True)]
+            each, caused = map(np.array, zip(*spans, strict=True))
+        phi, noise = each.T, caused.T
         p.phi11[:n], p.phi12[:n], p.phi21[:n], p.phi22[:n] = phi[0, 0], phi[1, 0], phi[0, 1], phi[1, 1]
         p.noise11[:n], p.noise12[:n], p.noise22[:n] = noise[0, 0], noise[1, 0], noise[1, 1]
         if steady:
-            gains = [steady_gain(*own, r, printed) for own in spans]
+            gains = [steady_gain(*own, r, printed) for own in zip(each, caused, strict=True)]
             p.gain1[:n], p.gain2[:n], p.psi[:n] = np.transpose(gains)
             p.inverse_psi[:n] = 1.0 / p.psi[:n]
         p.count = len(hypotheses)
