@@ -111,7 +111,7 @@ class Joint(Record):
 
 
 class JointPorts(ObservedPorts):
-    """Measurement and voltage, and what the filter makes of them."""
+    """Measurement and voltage; motion, deviations and innovation of the filter."""
 
     displacement: float = tap("um", "estimated displacement")
     velocity: float = tap("um/ms", "estimated velocity")
@@ -137,7 +137,7 @@ def fill_joint(p: PackedJointFilter, params: Any, context: Context) -> None:
 
 
 def fill_start(s: Joint, params: Any, context: Context) -> None:
-    """Write the nominal device at rest, with the uncertainty of the parameters."""
+    """Write the nominal device, which does not move, with the uncertainty of the parameters."""
     s.stiffness = s.damping = 1.0
     s.covariance.xx = params.initial_std_um**2
     s.covariance.vv = s.covariance.xx * context.device.natural_frequency**2

@@ -32,7 +32,7 @@ LEAST_INDEPENDENT = 1e-12
 """Smallest determinant of the covariance, over the product of both variances."""
 
 
-class Ekf(Judge):
+class EkfDiagnoser(Judge):
     r"""Places each hypothesis in the plane of spring and damper, and compares it with the estimate there.
 
     .. math:: d_k^2=(\hat\theta-\theta_k)^TP_\theta^{-1}(\hat\theta-\theta_k),\quad
@@ -122,7 +122,7 @@ class Ekf(Judge):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> Record:
-        """Start with the nominal device at rest, and no verdict."""
+        """Start with the nominal device, which does not move, and no verdict."""
         s = cls.State.zeros()
         fill_start(s, params, context)
         s.alone = -1.0

@@ -20,7 +20,7 @@ from core.joint_filter import (
 from core.record import Record
 
 
-class Ekf(Estimator):
+class EkfIdentifier(Estimator):
     r"""Extended Kalman filter of :math:`(x,\dot x,\kappa,\delta)` (Jazwinski 1970, 8.3; Ljung 1979).
 
     .. math:: m\ddot x+\delta\beta\dot x+\kappa kx=Fu,\quad\dot\kappa=w_\kappa,\;\dot\delta=w_\delta,\quad y=x+n
@@ -59,7 +59,7 @@ class Ekf(Estimator):
 
     @classmethod
     def state(cls, params: Any, context: Context) -> Record:
-        """Start with the nominal device at rest."""
+        """Start with the nominal device, which does not move."""
         s = cls.State.zeros()
         fill_start(s, params, context)
         return s

@@ -25,7 +25,7 @@ class Law(BlockParams):
     controller: Document = Field(description="the controller, as a scenario has it")
 
 
-class Change(BlockParams):
+class FaultyDevice(BlockParams):
     """A device of the comparison: the faults it has from the start."""
 
     name: str = Field(pattern=r"^[a-z][a-z0-9_]*$", description="its name in figures")
@@ -47,7 +47,7 @@ class Laws(Study):
         """The table."""
 
         laws: list[Law] = Field([], max_length=50, description="the controllers")
-        faults: list[Change] = Field([], max_length=50, description="the devices")
+        faults: list[FaultyDevice] = Field([], max_length=50, description="the devices")
         noise_um: list[float] = parameter([0.0], "noise of the sensor", "um")
         samples: int = parameter(4000, "length of a run", ge=10, le=1_000_000)
 
