@@ -12,10 +12,10 @@ from core.diagnose.bank import Bank
 from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
 from core.diagnose.lanes import Filters, PackedFilters
-from core.elementary import cos, exp, sin
+from core.elementary import cos, sin
 from core.format import format_short
 from core.matrix import product, riccati
-from core.voltage import MOST_LOST, Tick, over_tick
+from core.voltage import MOST_LOST, Tick, over_tick, shuttle_memory
 
 P = TypeVar("P", bound=PackedFilters)
 S = TypeVar("S", bound=Filters)
@@ -145,7 +145,7 @@ class KalmanBank(Bank):
         p.printed = printed
         p.every = context.every
         p.taken = _taken(params, context)
-        p.memory = shuttle_memory(context)
+        p.memory = shuttle_memory(context.device, context.dt_ms)
         p.least_drive = params.least_drive_v * params.least_drive_v
         return p
 
@@ -175,14 +175,6 @@ def _taken(params: Any, context: Context) -> int:
     if params.voltage == "start":
         return TAKE_START
     return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
-
-
-def shuttle_memory(context: Context) -> float:
-    """Return the share that a mean keeps from sample to sample if its memory is the shuttle's, 2m/beta or a cycle."""
-    device = context.device
-    cycle = 2.0 * math.pi / device.natural_frequency
-    lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
-    return exp(-context.dt_ms / lasting)
 
 
 def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
