@@ -13,7 +13,8 @@ from core.board.wiring import Wiring, engage, every_of, ports_of, unread
 def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     """Turn the wiring of a bench into the wiring of another with the same blocks, in place; say whether it worked.
 
-    It is not possible where a block reads more or fewer numbers than before.
+    It is not possible where a block reads more or fewer numbers than before, or where a stage of the board comes or
+    goes.
 
     Only rows whose parameters or context differ are packed again; states stay. When a block refuses its parameters
     nothing has changed.
@@ -24,7 +25,7 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
         As ``Block.pack``.
     """
     order, rows = _after(wiring, before, spec)
-    if any(order[row].block is not wiring.instances[row].block for row in rows):
+    if len(order) != len(wiring.instances) or any(order[row].block is not wiring.instances[row].block for row in rows):
         return False
     other = {
         place

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, parameter
-from core.converter import Converter, convert, reach
+from core.block import Block, Context, parameter
+from core.converter import BITS, Converter, ConverterParams, convert
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
@@ -19,11 +19,14 @@ class AxisDrive(Block):
     title = "Drive of an axis"
     per_axis = True
 
-    class Params(BlockParams):
+    class Params(ConverterParams):
         """The output stage, the same for every axis."""
+
+        spelt = ("quantum_un", "limit_un")
 
         limit_un: float = parameter(1000.0, "limit to either side", "uN", gt=0, le=1e6)
         quantum_un: float = parameter(0.0, "step of the converter, 0 for none", "uN", ge=0, le=1e4)
+        bits: int = BITS
         kind: Literal["held", "analogue"] = parameter(
             "held",
             "held by a converter, or analogue, for controllers that know their force between samples",
@@ -50,7 +53,7 @@ class AxisDrive(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the limit and the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = reach(params.limit_un, params.quantum_un), params.quantum_un
+        p.limit, p.quantum = params.reach, params.step
         p.analogue = params.kind == "analogue"
         return p
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, parameter
-from core.converter import Converter, convert, reach
+from core.block import Block, Context, parameter
+from core.converter import BITS, Converter, ConverterParams, convert
 from core.elementary import floor
 from core.noise import key, uniform
 from core.ports import BlockPorts, output, reads, tap
@@ -17,11 +17,14 @@ class Drive(Block):
 
     title = "Drive"
 
-    class Params(BlockParams):
+    class Params(ConverterParams):
         """The output stage."""
+
+        spelt = ("quantum_v", "limit_v")
 
         limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
+        bits: int = BITS
         dither_v: float = parameter(
             0.0,
             "random signs added to the controller's voltage, so that a constant drive carries information",
@@ -56,7 +59,7 @@ class Drive(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = reach(params.limit_v, params.quantum_v), params.quantum_v
+        p.limit, p.quantum = params.reach, params.step
         p.dither_per_ms = params.dither_rate_hz / 1e3
         p.dither_key = key(context.seed, "drive.dither")
         return p

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, parameter
+from core.block import Block, Context, Equation, parameter
+from core.converter import BITS, ConverterParams
 from core.elementary import floor
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -18,11 +19,14 @@ class Ideal(Block):
     title = "Ideal sensor"
     equations = (Equation("measurement", r"z_i=x(t_i)+v_i,\quad v_i\sim N(0,\sigma^2)", "5.2.1"),)
 
-    class Params(BlockParams):
+    class Params(ConverterParams):
         """Parameters of the ideal sensor."""
+
+        spelt = ("quantum_um", "range_um")
 
         noise_um: float = parameter(0.01, "standard deviation of the white noise", "um", ge=0, le=100)
         quantum_um: float = parameter(0.0, "step of the converter, 0 for none", "um", ge=0, le=100)
+        bits: int = BITS
         range_um: float = parameter(40.0, "range of the converter to either side", "um", gt=0)
 
     class Packed(Record):
@@ -42,7 +46,7 @@ class Ideal(Block):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
-        return math.sqrt(params.noise_um * params.noise_um + params.quantum_um * params.quantum_um / 12.0)
+        return math.sqrt(params.noise_um * params.noise_um + params.step * params.step / 12.0)
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
@@ -53,9 +57,9 @@ class Ideal(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.key = key(context.seed, "sensor")
-        if params.quantum_um > 0.0:  # the last step within the range
-            last = params.quantum_um * floor(params.range_um / params.quantum_um + 1e-9)
+        p.key, p.quantum_um = key(context.seed, "sensor"), params.step
+        if params.step > 0.0:  # the last step within the range
+            last = params.step * floor(params.range_um / params.step + 1e-9)
             p.range_um = min(params.range_um, last)
         return p
 
