@@ -18,6 +18,7 @@ from core.lag import moments_of_decay
 from scenarios.campaign.batch import outcomes
 from scenarios.schema import Scenario
 from tests.lab import AXES_RICH, QUIET, RICH, do, document, inner_digest, make, phasor, play, rms, run_digest
+from tests.scenarios import ways
 
 DT_MS = 0.01
 SETTLED = 4000
@@ -296,3 +297,10 @@ def test_a_name_of_a_stage_is_taken():
     bank = RICH["diagnosers"]["kalman"]
     with pytest.raises(InputError, match="part of the bench"):
         parse({**QUIET, "diagnosers": {"amplifier": bank}})
+
+
+@pytest.mark.parametrize("base", [QUIET, AXES_RICH], ids=["x", "x and y"])
+def test_stages_are_the_same_behind_the_wall(base):
+    own = {path: value for path, value in ALL.items() if not (base is AXES_RICH and path == "board.slew_v_per_us")}
+    scenario = {**document(own, base), "samples": 60}
+    assert ways.result(scenario, ways.WALL) == ways.result(scenario, ways.ALONE)
