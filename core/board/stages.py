@@ -30,9 +30,9 @@ def stages(spec: Spec) -> dict[str, Section]:
 
 
 def behind(spec: Spec, family: str, signal: str) -> str:
-    """Return the signal behind a stage: a plant meets what arrives of a drive, a sensor what is sampled of a plant.
+    """Return the signal behind a stage: a plant reads the output of the amplifier, a sensor the motion as sampled.
 
-    A law that is given a velocity as if it were measured is given that too.
+    A law that is given a velocity as if it were measured is given the sampled velocity.
     """
     part, _, name = signal.partition(".")
     if family == "plant" and part == "drive":

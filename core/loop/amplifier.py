@@ -15,7 +15,7 @@ MOST_DELAY = 64
 KEPT = MOST_DELAY + 2
 """Commands kept: the latest, the most delayed, and the command before it."""
 PARTS = 8
-"""Parts of a tick in each of which an analogue command counts with its value in the middle."""
+"""Parts of a tick; an analogue command counts in each with its value in the middle."""
 
 
 class DelayParams(BlockParams):
@@ -155,10 +155,10 @@ def packed_amplifier(p: Any, params: Any, context: Context, slew: float) -> Any:
 
 
 class Amplifier(Block):
-    r"""Delay, bandwidth and slew: what arrives at the device of the voltage that the board asks for.
+    r"""Delay, bandwidth and slew: the voltage that the board asks for arrives at the device late.
 
     The delay is the time that the board takes to compute. It is in front of limiter and converter of the drive, which
-    have no memory: they commute with it, so that one block has all that comes late. The amplifier has one pole,
+    have no memory: they commute with it, and one block can have all of the lateness. The amplifier has one pole,
     :math:`\dot v=\omega_a(u-v)`, and no more than a slew. Controllers, identifiers and diagnosers know the command
     ``drive.voltage`` alone, as on a real board. A stage of 0 passes on the command as it is; the block is left out when
     all are 0.

@@ -10,7 +10,7 @@ from core.ports import BlockPorts, output, reads
 
 
 class AxisAmplifier(Block):
-    """Delay and bandwidth: what arrives at one axis of the device of the force that the board asks for.
+    """Delay and bandwidth: the force that the board asks for arrives at one axis of the device late.
 
     The slew of an amplifier is a voltage over a time, and the drive of an axis a force; so there is none here.
     """

@@ -10,7 +10,7 @@ from core.ports import BlockPorts, output, reads
 
 
 class AxisSampler(Block):
-    """What a sensor senses of one axis of the device; all axes are sampled by one clock."""
+    """Filter and instant of sampling along one axis of the device; all axes have one clock."""
 
     title = "Filter and sampling of an axis"
     per_axis = True

@@ -74,7 +74,7 @@ def sample(p: PackedSampler, s: SamplerState, tick: float, x: float, v: float) -
 
 
 class Sampler(Block):
-    r"""Filter and instant of sampling: what a sensor senses of the device.
+    r"""Filter and instant of sampling: a sensor senses the motion of the device behind both.
 
     The filter has one pole, :math:`\dot y=\omega_c(x-y)`. It is in front of the sensor, whose noise is given as the
     noise of a sample, behind the filter. All sensors share one clock, so that all of them sample too late by the same
