@@ -13,7 +13,7 @@ export function stageMarks(document: Document): { drive?: StageMark; sensor?: St
   const late = delay_samples + delay_fraction;
   return {
     drive: mark([
-      [late, "late", `arrives ${late} samples late`],
+      [late, "late", `arrives ${late} ${late === 1 ? "sample" : "samples"} late`],
       [amplifier_khz, "slow", `through an amplifier of ${amplifier_khz} kHz`],
       [slew_v_per_us, "slow", `with a slew of ${slew_v_per_us} V/µs`],
     ]),
