@@ -25,7 +25,7 @@ def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
         As ``Block.pack``.
     """
     order, rows = _after(wiring, before, spec)
-    if len(order) != len(wiring.instances) or any(order[row].block is not wiring.instances[row].block for row in rows):
+    if any(order[row].block is not wiring.instances[row].block for row in rows):
         return False
     other = {
         place

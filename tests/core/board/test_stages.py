@@ -15,7 +15,7 @@ from core.board.hosted import Hosted
 from core.board.parse import parse
 from core.errors import InputError
 from core.lag import moments_of_decay
-from scenarios.campaign.batch import outcomes
+from scenarios.campaign.batch import outcomes, shape
 from scenarios.schema import Scenario
 from tests.lab import AXES_RICH, QUIET, RICH, do, document, inner_digest, make, phasor, play, rms, run_digest
 from tests.scenarios import ways
@@ -124,6 +124,34 @@ def test_a_step_rises_by_the_slew_and_ends_by_the_bandwidth():
     expected = np.where(time < turn, 0.1 * time, 10.0 - 0.1 * constant * np.exp(-(time - turn) / constant))
     assert np.abs(np.array(arrived[2:]) - expected).max() < 1e-9
     assert board.value("drive.voltage") == 10.0
+
+
+@pytest.mark.parametrize("corner", [0.0, 20.0, 300.0])
+@pytest.mark.parametrize("slew", [0.0, 0.3])
+def test_the_device_is_given_mean_slope_and_bend_of_the_voltage_over_each_tick(corner, slew):
+    """Against small steps of the equation, with a command that jumps at random."""
+    stage = {"delay_samples": 1, "delay_fraction": 0.3, "amplifier_khz": corner, "slew_v_per_us": slew}
+    reference = {"kind": "prbs", "amplitude_v": 5.0, "chip_rate_hz": 50000.0}
+    board = make({"board": stage, "reference": reference})
+    commands, parabolas = [], []
+    for _ in range(15):
+        board.advance(1)
+        commands.append(board.value("drive.voltage"))
+        parabolas.append([board.value(f"amplifier.{name}") for name in ("voltage", "middle", "end")])
+    parts = 20000
+    share = (np.arange(parts) + 0.5) / parts
+    asked = [0.0, 0.0, *commands]
+    voltage, past = 0.0, np.empty(parts)
+    pole, most = 2.0 * math.pi * corner * DT_MS / parts, slew * 1e3 * DT_MS / parts if slew else math.inf
+    for tick, found in enumerate(parabolas):
+        for k in range(parts):
+            gap = asked[tick + (1 if share[k] > 0.3 else 0)] - voltage
+            step = gap * -math.expm1(-pole) if corner else gap
+            before, voltage = voltage, voltage + min(max(step, -most), most)
+            past[k] = 0.5 * (before + voltage) if corner or slew else voltage
+        parabola = np.polyval(np.polyfit([0.0, 0.5, 1.0], found, 2), share)
+        for weight in (1.0, 2.0 * share - 1.0, 6.0 * share * share - 6.0 * share + 1.0):
+            assert np.mean(weight * parabola) == pytest.approx(np.mean(weight * past), abs=2e-3)
 
 
 def test_noise_of_jitter_is_slope_times_jitter():
@@ -289,7 +317,10 @@ def test_runs_with_other_delays_go_abreast_with_the_bits_of_each_alone(base):
         {**document({**own, "board.delay_samples": lane, "board.delay_fraction": 0.2 * lane, "seed": lane + 1}, base)}
         for lane in range(4)
     ]
-    found = outcomes([(Scenario.load({"samples": 300, **one}), one["seed"]) for one in documents])
+    scenarios = [Scenario.load({"samples": 300, **one}) for one in documents]
+    found = outcomes([(scenario, scenario.spec.seed) for scenario in scenarios])
+    assert {shape(scenario) for scenario in scenarios} == {shape(scenarios[0])} != {None}
+    assert shape(Scenario.load({"samples": 300, **base})) != shape(scenarios[0])
     assert [one.digest for one in found] == [run_digest(make({}, base=one), 300) for one in documents]
 
 
