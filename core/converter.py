@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Self
-
-from pydantic import ValidationError, model_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from typing import Any
 
 from core.block import BlockParams, parameter
 from core.elementary import floor
 from core.kernel import kernel
 from core.record import Record
 
-BITS: Any = parameter(
-    0, "bits of the converter in place of its step, which is its range over 2 to this power; 0 for none", ge=0, le=48
-)
-"""The other spelling of the step of a converter."""
+BITS: Any = parameter(0, "bits of the converter in place of its step: range over 2 to the bits", ge=0, le=48)
+"""The other spelling of the step of a converter, 0 for none."""
 
 
 class Converter(Record):
@@ -46,28 +41,12 @@ def reach(limit: float, quantum: float) -> float:
     return limit if is_whole else quantum * math.floor(steps)
 
 
-class ConverterParams(BlockParams):
-    """Parameters with a converter, whose step is given in units of its own or in ``bits``; never in both."""
+def step_of(quantum: float, bits: int, limit: float) -> float:
+    """Return the step of a converter, 0 for none: as it is given, or its range to both sides over 2 to so many bits."""
+    return math.ldexp(2.0 * limit, -bits) if bits > 0 else quantum
 
-    spelt: ClassVar[tuple[str, str]]
-    """Names of its step and of its limit to either side."""
 
-    @model_validator(mode="after")
-    def _one_step(self) -> Self:
-        quantum, _ = self.spelt
-        if vars(self)["bits"] and vars(self)[quantum]:
-            twice = PydanticCustomError("twice", f"gives the step of the converter, and {quantum} does too")
-            details = InitErrorDetails(type=twice, loc=("bits",), input=vars(self)["bits"])
-            raise ValidationError.from_exception_data(type(self).__name__, [details])
-        return self
-
-    @property
-    def step(self) -> float:
-        """Step of the converter, 0 for none: as it is given, or the range over a power of 2."""
-        quantum, bits, limit = (vars(self)[name] for name in (self.spelt[0], "bits", self.spelt[1]))
-        return math.ldexp(2.0 * limit, -bits) if bits else float(quantum)
-
-    @property
-    def reach(self) -> float:
-        """The largest number that the converter puts out."""
-        return reach(vars(self)[self.spelt[1]], self.step)
+def twice_given(params: BlockParams) -> str:
+    """Name the step of a converter that ``bits`` give as well; nothing where one of them or none is given."""
+    given = [name for name, value in params if name.startswith("quantum_") and value]
+    return given[0] if given and vars(params).get("bits") else ""

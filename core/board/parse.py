@@ -26,6 +26,7 @@ from core.board.instances import instances
 from core.board.library import IDENTIFIER, Library, library_of
 from core.board.spec import OF_CONTEXT, BoardSettings, Section, Spec, fields
 from core.board.stages import STAGES, AxesBoardParams, BoardParams
+from core.converter import twice_given
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
@@ -287,9 +288,14 @@ def _named(library: Library, family: str, key: str, name: str, table: Document) 
 
 def _params(params: type[BlockParams], values: Document, field: str) -> BlockParams:
     try:
-        return params.model_validate(values, strict=False)
+        found = params.model_validate(values, strict=False)
     except ValidationError as error:
         raise from_validation(error, _nested_fields(params)).under(field) from None
+    if twice := twice_given(found):
+        raise InputError(
+            f"gives the step of the converter, and {twice} does too", f"{field}.bits", "leave one of them out"
+        )
+    return found
 
 
 def _nested_fields(model: type[BaseModel]) -> dict[str, list[str]]:

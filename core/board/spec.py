@@ -198,8 +198,8 @@ class Spec:
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
-            limit_v=drive.reach if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=drive.reach if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
+            limit_un=AxisDrive.reach(drive) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, Context, parameter
-from core.converter import BITS, Converter, ConverterParams, convert
+from core.block import Block, BlockParams, Context, parameter
+from core.converter import BITS, Converter, convert, reach, step_of
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
@@ -19,10 +19,8 @@ class AxisDrive(Block):
     title = "Drive of an axis"
     per_axis = True
 
-    class Params(ConverterParams):
+    class Params(BlockParams):
         """The output stage, the same for every axis."""
-
-        spelt = ("quantum_un", "limit_un")
 
         limit_un: float = parameter(1000.0, "limit to either side", "uN", gt=0, le=1e6)
         quantum_un: float = parameter(0.0, "step of the converter, 0 for none", "uN", ge=0, le=1e4)
@@ -50,10 +48,20 @@ class AxisDrive(Block):
         saturated: float = tap("1", "1 while more force is asked for than the drive has")
 
     @classmethod
+    def quantum(cls, params: Any) -> float:
+        """Return the step of the converter, 0 for none."""
+        return step_of(params.quantum_un, params.bits, params.limit_un)
+
+    @classmethod
+    def reach(cls, params: Any) -> float:
+        """Return the largest force that is put out."""
+        return reach(params.limit_un, cls.quantum(params))
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the limit and the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = params.reach, params.step
+        p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.analogue = params.kind == "analogue"
         return p
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from core.block import Block, Context, parameter
-from core.converter import BITS, Converter, ConverterParams, convert
+from core.block import Block, BlockParams, Context, parameter
+from core.converter import BITS, Converter, convert, reach, step_of
 from core.elementary import floor
 from core.noise import key, uniform
 from core.ports import BlockPorts, output, reads, tap
@@ -17,10 +17,8 @@ class Drive(Block):
 
     title = "Drive"
 
-    class Params(ConverterParams):
+    class Params(BlockParams):
         """The output stage."""
-
-        spelt = ("quantum_v", "limit_v")
 
         limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
@@ -56,10 +54,20 @@ class Drive(Block):
         saturated: float = tap("1", "1 while more voltage is asked for than the drive has")
 
     @classmethod
+    def quantum(cls, params: Any) -> float:
+        """Return the step of the converter, 0 for none."""
+        return step_of(params.quantum_v, params.bits, params.limit_v)
+
+    @classmethod
+    def reach(cls, params: Any) -> float:
+        """Return the largest voltage that is put out."""
+        return reach(params.limit_v, cls.quantum(params))
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = params.reach, params.step
+        p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.dither_per_ms = params.dither_rate_hz / 1e3
         p.dither_key = key(context.seed, "drive.dither")
         return p

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, Context, Equation, parameter
-from core.converter import BITS, ConverterParams
+from core.block import Block, BlockParams, Context, Equation, parameter
+from core.converter import step_of
 from core.elementary import floor
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -19,14 +19,12 @@ class Ideal(Block):
     title = "Ideal sensor"
     equations = (Equation("measurement", r"z_i=x(t_i)+v_i,\quad v_i\sim N(0,\sigma^2)", "5.2.1"),)
 
-    class Params(ConverterParams):
+    class Params(BlockParams):
         """Parameters of the ideal sensor."""
-
-        spelt = ("quantum_um", "range_um")
 
         noise_um: float = parameter(0.01, "standard deviation of the white noise", "um", ge=0, le=100)
         quantum_um: float = parameter(0.0, "step of the converter, 0 for none", "um", ge=0, le=100)
-        bits: int = BITS
+        bits: int = parameter(0, "bits of the converter in place of its step: range over 2 to the bits", ge=0, le=48)
         range_um: float = parameter(40.0, "range of the converter to either side", "um", gt=0)
 
     class Packed(Record):
@@ -46,7 +44,8 @@ class Ideal(Block):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
-        return math.sqrt(params.noise_um * params.noise_um + params.step * params.step / 12.0)
+        step = step_of(params.quantum_um, params.bits, params.range_um)
+        return math.sqrt(params.noise_um * params.noise_um + step * step / 12.0)
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
@@ -57,9 +56,11 @@ class Ideal(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.key, p.quantum_um = key(context.seed, "sensor"), params.step
-        if params.step > 0.0:  # the last step within the range
-            last = params.step * floor(params.range_um / params.step + 1e-9)
+        p.key = key(context.seed, "sensor")
+        step = step_of(params.quantum_um, params.bits, params.range_um)
+        p.quantum_um = step
+        if step > 0.0:  # the last step within the range
+            last = step * floor(params.range_um / step + 1e-9)
             p.range_um = min(params.range_um, last)
         return p
 

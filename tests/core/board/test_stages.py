@@ -32,6 +32,34 @@ GYROSCOPE: dict[str, Any] = {
     "controller": {"kind": "open_loop_rate"},
     "sensor": {"kind": "pick_off"},
 }
+OWN_SENSOR = '''
+from core.ports import BlockPorts, reads
+from core.record import Record
+from core.sense.sensor import ERROR_PORT, RECOVERED_PORT, TRUE_PORT, Sensor, SensorParams
+
+
+class Mine(Sensor):
+    """A sensor of one's own."""
+
+    title = "Mine"
+
+    class Params(SensorParams):
+        """Nothing to choose."""
+
+    class Ports(BlockPorts):
+        """The displacement it senses, and the true one."""
+
+        sensed: float = reads("plant.displacement", "um", "displacement")
+        true: float = TRUE_PORT
+        displacement: float = RECOVERED_PORT
+        error: float = ERROR_PORT
+
+    @staticmethod
+    def step(p: Record, s: Record, x: Ports) -> None:
+        """Sense the displacement."""
+        x.displacement = x.sensed
+        x.error = x.sensed - x.true
+'''
 ALL = {
     "board.delay_samples": 1,
     "board.delay_fraction": 0.3,
@@ -205,6 +233,15 @@ def test_a_measurement_is_rounded_behind_the_filter_and_a_command_before_the_del
     trace = play(make({**HELD, **stage}), 600)
     assert np.all(trace["sensor.displacement"] % 0.5 == 0.0)
     assert np.array_equal(trace["drive.voltage"], np.floor(trace["open_loop.voltage"] + 0.5))
+
+
+def test_a_unit_senses_the_filtered_motion_and_its_error_is_against_the_true_one():
+    stage = {**HELD, "board.antialias_khz": 5.0}
+    own = play(make({**stage, "units.mine.source": OWN_SENSOR, "sensor.kind": "mine"}), 300)
+    ideal = play(make(stage), 300)
+    assert own["sensor.displacement"].tobytes() == ideal["sensor.displacement"].tobytes()
+    assert np.array_equal(own["mine.error"], own["sensor.displacement"] - own["plant.displacement"])
+    assert rms(own["mine.error"]) > 0.1
 
 
 def test_bits_are_another_spelling_of_a_step():
