@@ -10269,7 +10269,7 @@ export interface components {
              */
             quantum_un?: number;
             /**
-             * @description bits of the converter in place of its step, which is its range over 2 to this power; 0 for none
+             * @description bits of the converter in place of its step: range over 2 to the bits
              * @default 0
              */
             bits?: number;
@@ -10915,7 +10915,7 @@ export interface components {
              */
             quantum_v?: number;
             /**
-             * @description bits of the converter in place of its step, which is its range over 2 to this power; 0 for none
+             * @description bits of the converter in place of its step: range over 2 to the bits
              * @default 0
              */
             bits?: number;
@@ -11713,7 +11713,7 @@ export interface components {
              */
             quantum_um?: number;
             /**
-             * @description bits of the converter in place of its step, which is its range over 2 to this power; 0 for none
+             * @description bits of the converter in place of its step: range over 2 to the bits
              * @default 0
              */
             bits?: number;
