@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, cast
 from core.block import Block, BlockParams, Context, FloatArray
 from core.board.library import PLAIN, Library
 from core.board.spec import Section, Spec
+from core.board.stages import stages
 from core.diagnose.hypothesis import ModelList
 from core.errors import InputError
 from core.identify.estimator import Estimator
@@ -69,7 +70,8 @@ def instances(spec: Spec) -> list[Instance]:
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, absent in _absent_faults(spec.library, spec.axes).items():
         order.append(absent._replace(params=spec.faults[name]) if name in spec.faults else absent)
-    order += _measured(spec)
+    acting = stages(spec)
+    order += _stage("sampler", acting, spec.axes) + _measured(spec)
     for name, section in spec.identifiers.items():
         order.append(_waiting(spec, name, section))
         if issubclass(section.block, Estimator):
@@ -85,7 +87,8 @@ def instances(spec: Spec) -> list[Instance]:
     for slot in spec.driving:  # a later slot reads the outputs of an earlier slot
         order += [_usual(name, section) for name, section in spec.controllers.items() if section.block.slot == slot]
     order += [_usual(name, section) for name, section in spec.readouts.items()]
-    return [*order, *_at_each_axis("drive", spec.drive, spec.axes), *_at_each_axis("guard", spec.guard, spec.axes)]
+    order += _at_each_axis("drive", spec.drive, spec.axes) + _stage("amplifier", acting, spec.axes)
+    return order + _at_each_axis("guard", spec.guard, spec.axes)
 
 
 def _measured(spec: Spec) -> list[Instance]:
@@ -98,6 +101,11 @@ def _measured(spec: Spec) -> list[Instance]:
                 order += _at_each_axis(name, section, spec.axes if section.block.per_axis else ())
     measurement = AxisMeasurement if spec.axes else Measurement
     return order + _at_each_axis("sensor", Section(measurement, measurement.Params()), spec.axes)
+
+
+def _stage(key: str, acting: dict[str, Section], axes: tuple[str, ...]) -> list[Instance]:
+    """Return the instances of a stage of the board, none if it is off."""
+    return _at_each_axis(key, acting[key], axes) if key in acting else []
 
 
 def _at_each_axis(key: str, section: Section, axes: tuple[str, ...]) -> list[Instance]:

@@ -14,7 +14,6 @@ from pydantic import Field
 from core.block import Block, BlockParams, Context, Oscillator
 from core.board.document import Document, sections
 from core.board.library import Library, library_of
-from core.converter import reach
 from core.device.device import Device
 from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
@@ -22,7 +21,7 @@ from core.loop.environment import Environment
 from core.loop.model import Model
 from core.table import Table
 
-ALONE = ("environment", "plant", "reference", "model", "drive", "guard")
+ALONE = ("environment", "plant", "reference", "model", "drive", "board", "guard")
 GROUPS = ("sensors", "generators", "controllers", "identifiers", "diagnosers", "readouts")
 """Sections of a bench, and tables of sections by name."""
 ALL_ALONE, ALL_GROUPS = attrgetter(*ALONE), attrgetter(*GROUPS)
@@ -74,6 +73,7 @@ class Spec:
     reference: Section
     model: Section
     drive: Section
+    board: Section
     guard: Section
     measuring: str
     sensors: dict[str, Section]
@@ -215,8 +215,8 @@ class Spec:
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
-            limit_v=reach(drive.limit_v, drive.quantum_v) if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=reach(drive.limit_un, drive.quantum_un) if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
+            limit_un=AxisDrive.reach(drive) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )

@@ -19,6 +19,7 @@ from core.board.lane import Lane
 from core.board.observer import warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import PendingCommand, PendingQueue
+from core.board.stages import stages
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.outcome import RunOutcome, fault_of, odds_of, outcome, summed
@@ -72,7 +73,7 @@ def shape(scenario: Scenario) -> Any:
         return None
     spec = scenario.spec
     blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
-    return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
+    return blocks, tuple(stages(spec)), tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
 
 
 def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcome], tell: Callable[[], None]) -> None:

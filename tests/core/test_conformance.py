@@ -23,6 +23,9 @@ from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_di
 TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
+STAGES = {"sampler": {"antialias_khz": 30.0, "jitter_us": 0.3}, "amplifier": {"delay_samples": 1, "delay_fraction": 0.4,
+          "amplifier_khz": 40.0}}  # fmt: skip
+"""Values that put a stage of the board on a bench."""
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
 ENDS = ("not a finite", "touched", "shorted")
 PROFILES = (
@@ -49,6 +52,8 @@ def path_of(entry: type[Block]) -> str:
         return "readouts.allan"
     if entry.family == "control" and entry.axes:
         return f"controllers.{entry.name}"
+    if entry.family == "board" and entry.name.removeprefix("axis_") in STAGES:
+        return "board"
     if entry.family == "board" and entry.per_axis:
         return entry.name.removeprefix("axis_")
     if entry.family == "diagnose":
@@ -64,6 +69,8 @@ def path_of(entry: type[Block]) -> str:
 
 def chosen(entry: type[Block]) -> dict[str, Any]:
     """Return the values that put a block on the rich bench."""
+    if entry.family == "board" and (stage := STAGES.get(entry.name.removeprefix("axis_"))):
+        return {"board": {**stage, **({"slew_v_per_us": 0.1} if entry.name == "amplifier" else {})}}
     if entry.axes or entry.per_axis:
         return chosen_of_axes(entry)
     if entry.family == "sense" and all(port.name != "displacement" for port in entry.outputs):
