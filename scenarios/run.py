@@ -23,6 +23,7 @@ from core.board.parse import changed
 from core.compile.segment import code_of, kept_code_of
 from core.errors import InputError
 from core.signals import Signal
+from scenarios.measure.estimation import estimation_metrics
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
@@ -113,6 +114,8 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
+    for one in [board, *(board.twins.values() if isinstance(board, Ensemble) else ())]:
+        one.estimates = scenario.asks_estimates
     _await_events(board, scenario)
     return board
 
@@ -138,6 +141,7 @@ def build_hosted(
             raise InputError("code from outside is asked by one board, and nothing else", name, "leave it out")
     spec = scenario.spec if seed is None else changed(scenario.spec, {"seed": seed})
     board = Hosted(spec, law, diagnosers=diagnosers, identifiers=identifiers, compiled=compiled)
+    board.estimates = scenario.asks_estimates
     _await_events(board, scenario)
     return board
 
@@ -284,7 +288,8 @@ def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
     """Return the figures of a board from its trace, or the figures of a twin from the trace of all boards."""
     names = [name for name in figure_signals(board) if prefix + name in trace]
-    return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    metrics = measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    return metrics | (estimation_metrics(board) if scenario.asks_estimates else {})
 
 
 def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResult:

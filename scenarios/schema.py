@@ -124,6 +124,11 @@ class Scenario:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
 
+    @property
+    def asks_estimates(self) -> bool:
+        """Whether figures of weighted estimates are asked for: by an option, or by an expectation."""
+        return self.head.metrics.estimation or any(one.metric.startswith("estimation.") for one in self.head.expect)
+
     def _checked(self, event: Document) -> list[Command]:
         """Return the commands of an event, which could be carried out on this bench."""
         commands = _commands(event)

@@ -281,6 +281,8 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if source.endswith("?"):
         signal = source.removesuffix("?")
         return signal if signal in index else NOTHING
+    if source.startswith("^"):
+        return f"{instance.prefix.rpartition('.')[0]}.{source[1:]}"
     if not source.startswith("@"):
         return source or f"{instance.prefix}.{port.name}"
     slot, dot, name = source[1:].partition(".")
