@@ -60,7 +60,7 @@ class WeightedState(Block):
     Packed = Models
 
     class State(ParameterErrors):
-        """Sums of squared errors of displacement, velocity, and both over their covariance; sums of the present step.
+        """Sums of squared errors of displacement and velocity; the same of displacements in the present step.
 
         The truth of this step, the sum for the weighted displacement and for each model, and the largest ratio of all
         steps before.
@@ -68,7 +68,6 @@ class WeightedState(Block):
 
         displacement_square: float
         velocity_square: float
-        normalised: float
         truth: float
         step_square: float
         worst: float
@@ -130,19 +129,16 @@ class WeightedState(Block):
         x.velocity_std = math.sqrt(max(p22, 0.0))
         x.covariance = p12
         if math.isfinite(displacement + velocity):
-            compare(s, x, n, p11, p12, p22)
+            compare(s, x, n)
 
 
 @kernel
-def compare(s: WeightedState.State, x: WeightedState.Ports, n: int, p11: float, p12: float, p22: float) -> None:
+def compare(s: WeightedState.State, x: WeightedState.Ports, n: int) -> None:
     """Add the squared errors of a sample; where the truth changes, a new step begins."""
     e1 = x.displacement - x.true_displacement
     e2 = x.velocity - x.true_velocity
-    determinant = p11 * p22 - p12 * p12
     s.displacement_square += e1 * e1
     s.velocity_square += e2 * e2
-    if determinant > 0.0:
-        s.normalised += 0.5 * (p22 * e1 * e1 - 2.0 * p12 * e1 * e2 + p11 * e2 * e2) / determinant
     if x.truth != s.truth:
         s.worst = max(s.worst, over_best_false(s, n))
         s.truth = x.truth

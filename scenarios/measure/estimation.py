@@ -15,8 +15,7 @@ def estimation_metrics(board: Board) -> dict[str, float]:
     """Return the rms errors of every weighted estimate, over all samples from the first.
 
     ``rms_error_um`` and ``rms_error_um_ms`` are the errors of displacement and velocity, ``rms_error_<part>_pct`` the
-    errors of the parameters in percent of nominal. ``normalised_error`` is the mean of half the squared error over its
-    covariance, 1 where the covariance is right. ``worst_step_ratio`` is the rms error of the displacement over the
+    errors of the parameters in percent of nominal. ``worst_step_ratio`` is the rms error of the displacement over the
     error of the best false model, in the stretch with one true hypothesis in which this ratio is the largest.
     """
     figures: dict[str, float] = {}
@@ -32,6 +31,5 @@ def estimation_metrics(board: Board) -> dict[str, float]:
         if isinstance(s, WeightedState.State):
             figures[f"{prefix}.rms_error_um"] = math.sqrt(s.displacement_square / s.samples)
             figures[f"{prefix}.rms_error_um_ms"] = math.sqrt(s.velocity_square / s.samples)
-            figures[f"{prefix}.normalised_error"] = s.normalised / s.samples
             figures[f"{prefix}.worst_step_ratio"] = worst_step(s, len(hypotheses_of(section.params)))
     return {name: float(value) for name, value in figures.items() if math.isfinite(value)}
