@@ -7,6 +7,7 @@ import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { be, mount } from "../../testing/render";
+import { withWeighted } from "../../testing/weighted";
 import { LanesPanel } from "./lanes-panel";
 
 const { bench, status, events, frames } = await recordedBench("first-look");
@@ -48,6 +49,18 @@ it("says the verdict in words, and how often it was right", () => {
   board.status({ scores: { kalman: { ...score, winner: 3, false_switches: 2 } } });
   expect(screen.getByTitle("k+5")).toHaveAttribute("data-right", "false");
   expect(figure("false switches")).toHaveTextContent("2");
+});
+
+it("says the weighted output with its standard deviation, where the bench has it", async () => {
+  const board = connect(withWeighted(bench));
+  board.status(status);
+  mount(<LanesPanel />);
+  board.frame(
+    { "kalman.weighted.displacement": () => -2.5, "kalman.weighted.displacement_std": () => 0.02 },
+    { head: 400 },
+  );
+  await drawOnce();
+  expect(figure("weighted output")?.textContent?.replace(/\s/g, " ")).toBe("−2.500 µm ± 20.00 nm");
 });
 
 it("calls the delay before any fault a start-up", async () => {

@@ -8,6 +8,7 @@ import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/for
 import type { TruthSwitch } from "./delays";
 import { FalseSwitches } from "./false-switches";
 import styles from "./lanes.module.css";
+import { WeightedEstimate } from "./weighted-estimate";
 
 /** The figures of a diagnoser, to be read from the last row. */
 export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
@@ -40,6 +41,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
         <Delay last={last} dtMs={dtMs} />
       </Figure>
       <Figure name="correct">{score ? formatPercent(score.correct_fraction) : "–"}</Figure>
+      <WeightedEstimate id={id} />
       <Figure name="false switches">{score ? <FalseSwitches score={score} /> : "–"}</Figure>
     </dl>
   );

@@ -30,7 +30,10 @@ async function mountLanes() {
 
 it("subscribes to the probabilities, the winner, the truth and what fits none", async () => {
   const { board } = await mountLanes();
-  expect(board.subscriptions.map(({ signals }) => signals)).toEqual([frames.kalman.signals]);
+  const asked = board.subscriptions.map(({ signals }) => signals);
+  const [weighted, lanes] = [true, false].map((is) => asked.filter(([first]) => first.includes(".weighted.") === is));
+  expect(lanes).toEqual([frames.kalman.signals]);
+  expect(weighted.length).toBe(bench.signals.some(({ name }) => name === "kalman.weighted.displacement") ? 1 : 0);
 });
 
 it("fills a lane for each hypothesis, in its colour", async () => {

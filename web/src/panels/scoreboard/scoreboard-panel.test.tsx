@@ -1,12 +1,15 @@
 import { screen, within } from "@testing-library/react";
 import { expect, it } from "vitest";
 import { connect } from "../../testing/fake-transport";
+import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
+import { withWeighted } from "../../testing/weighted";
 import { ScoreboardPanel } from "./scoreboard-panel";
 
 const { bench, status } = await recordedBench("first-look");
 const { kalman } = status.scores;
+const weighing = withWeighted(bench);
 const cells = (name: string) =>
   within(screen.getByRole("row", { name: new RegExp(`^${name} `) }))
     .getAllByRole("cell")
@@ -50,4 +53,41 @@ it("is a region that keys reach, for it scrolls", async () => {
   board.status(status);
   await user.tab();
   expect(screen.getByRole("region", { name: "Scoreboard" })).toHaveFocus();
+});
+
+it("shows state and parameters as the probabilities weigh them, with standard deviations", async () => {
+  const board = connect(weighing);
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  const weighted = (values: Record<string, number>) =>
+    Object.fromEntries(Object.entries(values).map(([port, value]) => [`kalman.weighted.${port}`, () => value]));
+  board.frame(
+    weighted({
+      displacement: 1.5,
+      displacement_std: 0.014,
+      velocity: -20,
+      velocity_std: 0.25,
+      mass: 1.0496,
+      stiffness: 1,
+      damping: 1.003,
+    }),
+    { head: 400 },
+  );
+  await drawOnce();
+  const table = screen.getByRole("table", { name: /^Models weighted by their probabilities/ });
+  const shown = within(within(table).getByRole("row", { name: /^kalman / })).getAllByRole("cell");
+  expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
+    "1.500 µm± 14.00 nm",
+    "−20.00 µm/ms± 250.0 nm/ms",
+    "× 1.050",
+    "× 1.000",
+    "× 1.003",
+  ]);
+});
+
+it("has no weighted estimates on a bench that does not show them", () => {
+  const board = connect({ ...bench, signals: bench.signals.filter(({ name }) => !name.includes(".weighted.")) });
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  expect(screen.queryByRole("table", { name: /^Models weighted/ })).toBeNull();
 });
