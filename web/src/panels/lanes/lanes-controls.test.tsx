@@ -60,7 +60,7 @@ it("says the weighted output with its standard deviation, where the bench has it
     { head: 400 },
   );
   await drawOnce();
-  expect(figure("weighted output")?.textContent?.replace(/\s/g, " ")).toBe("−2.500 µm ± 20.00 nm");
+  expect(figure("weighted output")?.textContent?.replace(/\s/g, " ")).toBe("−2.50 µm ± 20.0 nm");
 });
 
 it("calls the delay before any fault a start-up", async () => {

@@ -77,8 +77,8 @@ it("shows state and parameters as the probabilities weigh them, with standard de
   const table = screen.getByRole("table", { name: /^Models weighted by their probabilities/ });
   const shown = within(within(table).getByRole("row", { name: /^kalman / })).getAllByRole("cell");
   expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
-    "1.500 µm± 14.00 nm",
-    "−20.00 µm/ms± 250.0 nm/ms",
+    "1.50 µm± 14.0 nm",
+    "−20.0 mm/s± 250 µm/s",
     "× 1.050",
     "× 1.000",
     "× 1.003",
