@@ -113,3 +113,11 @@ def test_weighted_estimates_run_where_something_reads_them(values: dict[str, Any
     assert (
         run(with_values(scenario, {"events": [], **ASKED})).digest == run(with_values(scenario, {"events": []})).digest
     )
+
+
+def test_a_block_that_reads_a_weighted_estimate_lets_all_that_it_is_made_of_run() -> None:
+    scenario = with_values(get("ch5-seven-step"), {"diagnosers.self_tuning": {"kind": "self_tuning"}})
+    board = build(scenario)
+    wiring = board.wiring
+    wiring.ports(wiring.row("model"))[0] = wiring.index["self_tuning.weighted.stiffness"]
+    assert ESTIMATES & looking_on(board) == {"kalman.weighted"}
