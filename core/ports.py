@@ -37,7 +37,8 @@ class Port:
         Shown to people.
     source : str
         For inputs: the signal it is wired to by default. A signal that ends in ``?`` may be missing and reads 0 then;
-        one that begins with ``^`` is a signal of the block whose name comes before the last dot of this block's prefix.
+        a source that begins with ``^`` is a signal of the block whose name comes before the last dot of this block's
+        prefix.
     labels : tuple of str
         For vectors: one name per component.
     each : str

@@ -227,7 +227,7 @@ def filters_step(p: PackedFilters, s: Filters, x: StatePorts, n: int) -> bool:
 
 @kernel
 def show_states(p: PackedFilters, s: Filters, x: StatePorts, n: int) -> None:
-    """Show the corrected states and their covariances; with steady gains the covariances are those of the limit."""
+    """Show the corrected states and their covariances; steady gains have the covariances of the limit."""
     displacements = x.state_displacement
     velocities = x.state_velocity
     first = x.variance_displacement

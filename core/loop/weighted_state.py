@@ -153,7 +153,7 @@ def compare(s: WeightedState.State, x: WeightedState.Ports, n: int) -> None:
 
 @kernel
 def over_best_false(s: WeightedState.State, n: int) -> float:
-    """Return the rms error of the weighted displacement in this step over that of the best model that is not true."""
+    """Return the rms error of the weighted displacement in this step over the error of the best false model."""
     least = math.inf
     for i in range(n):
         if i != s.truth:
