@@ -114,8 +114,6 @@ def build(scenario: Scenario, seed: int | None = None, *, compiled: bool = True)
         spec = changed(spec, {"seed": seed})
         twins = {name: changed(twin, {"seed": seed}) for name, twin in twins.items()}
     board = make(spec, twins, compiled=compiled)
-    for one in [board, *(board.twins.values() if isinstance(board, Ensemble) else ())]:
-        one.estimates = scenario.asks_estimates
     _await_events(board, scenario)
     return board
 
@@ -141,13 +139,13 @@ def build_hosted(
             raise InputError("code from outside is asked by one board, and nothing else", name, "leave it out")
     spec = scenario.spec if seed is None else changed(scenario.spec, {"seed": seed})
     board = Hosted(spec, law, diagnosers=diagnosers, identifiers=identifiers, compiled=compiled)
-    board.estimates = scenario.asks_estimates
     _await_events(board, scenario)
     return board
 
 
 def _await_events(board: Board, scenario: Scenario) -> None:
-    """Let the events of a scenario wait on its board, and note its warnings."""
+    """Let the events of a scenario wait on its board, and note its warnings and whether it asks for estimates."""
+    board.estimates = scenario.asks_estimates
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):

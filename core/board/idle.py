@@ -17,7 +17,7 @@ def leave_out_idle(board: Board) -> None:
     Call it at the first tick, when all commands of the run wait.
     """
     for one in [board, *(board.twins.values() if isinstance(board, Ensemble) else ())]:
-        wiring, idle = one.wiring, idle_blocks(one, board.pending)
+        wiring, idle = one.wiring, idle_blocks(one, board.pending, board.estimates)
         wiring.left_out = {row for row, instance in enumerate(wiring.instances) if instance.key in idle}
         wiring.is_changed = True
         one.link()
@@ -25,19 +25,18 @@ def leave_out_idle(board: Board) -> None:
 
 def looking_on(board: Board) -> set[str]:
     """Return the blocks without effect: idle blocks, and sensors that rest to the end."""
-    return idle_blocks(board, board.pending) | (
-        {*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending)))
-    )
+    idle = idle_blocks(board, board.pending, board.estimates)
+    return idle | ({*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending))))
 
 
-def idle_blocks(board: Board, pending: PendingQueue) -> set[str]:
-    """Return the blocks that nothing reads: controllers that drive neither now nor by a command that waits, estimates.
+def idle_blocks(board: Board, pending: PendingQueue, wants_estimates: bool) -> set[str]:
+    """Return the blocks that nothing reads.
 
-    Weighted estimates are idle unless they are asked for.
+    These are controllers that drive neither now nor by a command that waits, and weighted estimates that nobody wants.
     """
     spec, wiring, named = board.spec, board.wiring, _named(pending)
     idle = {*spec.controllers} - {*spec.driving.values()} - named
-    if not board.estimates:
+    if not wants_estimates:
         conditions = " ".join(entry.command.when or "" for entry in pending)
         weighing = weighing_blocks(wiring.instances)
         idle |= weighing - {one.block for one in wiring.signals if one.block in weighing and one.name in conditions}

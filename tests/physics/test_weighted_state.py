@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from filterpy.kalman import IMMEstimator, KalmanFilter
 
+from scenarios.campaign.batch import outcomes
 from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.run import run
@@ -228,3 +229,29 @@ def test_the_weighted_state_is_nearer_in_each_of_the_seven_steps_than_the_best_f
         factors = np.array([FACTORS[NAMES[int(index)]][i] for index in truth])
         error = trace[f"kalman.weighted.{part}"] - factors
         assert figures[f"estimation.kalman.rms_error_{part}_pct"] == pytest.approx(100 * rms(error), rel=1e-9)
+
+
+def test_figures_of_runs_abreast_are_the_figures_of_runs_alone():
+    scenario = with_values(get("ch5-weighted-output"), {"samples": 2500})
+    for one in outcomes([(scenario, seed) for seed in range(1, 5)]):
+        alone = run(scenario, one.seed, figures_only=True)
+        assert one.metrics == alone.metrics and one.digest == alone.digest
+        assert sum(name.startswith("estimation.") for name in one.metrics) == 4 * 6
+
+
+def test_the_mean_of_the_models_is_no_such_estimate():
+    """The expectations of the scenario are about the weights: with equal weights they do not hold."""
+    scenario = get("ch5-weighted-output")
+    result = run(scenario, taps=True)
+    assert all(entry["ok"] for entry in result.expectations())
+    bounds = {entry.metric: entry for entry in scenario.head.expect}
+    for name in ("kalman", "imm"):
+        states = [result.signal(f"{name}.state_displacement.{hypothesis}") for hypothesis in NAMES]
+        error = rms(np.mean(states, axis=0) - result.signal("plant.displacement"))
+        assert bounds[f"estimation.{name}.rms_error_um"].missed_twice(error)
+    error = rms(np.mean([factors[1] for factors in FACTORS.values()]) - stiffness_of(result.signal("kalman.truth")))
+    assert bounds["estimation.kalman.rms_error_stiffness_pct"].missed_twice(100.0 * error)
+
+
+def stiffness_of(truth: np.ndarray) -> np.ndarray:
+    return np.array([FACTORS[NAMES[int(index)]][1] for index in truth])
