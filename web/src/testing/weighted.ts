@@ -1,4 +1,5 @@
 import type { Bench, Signal } from "../api/types";
+import type { Subscription } from "../stream/wire";
 
 const UNITS = { displacement: "um", displacement_std: "um", velocity: "um/ms", velocity_std: "um/ms" };
 const RATIOS = { mass: "1", stiffness: "1", damping: "1" };
@@ -12,3 +13,7 @@ export function withWeighted(bench: Bench): Bench {
   });
   return { ...bench, signals: [...rest, ...own] };
 }
+
+/** The subscriptions of a panel except for the words of a weighted estimate. */
+export const besideEstimate = (subscriptions: readonly Subscription[]): Subscription[] =>
+  subscriptions.filter(({ signals }) => !signals.some((name) => name.includes(".weighted.")));

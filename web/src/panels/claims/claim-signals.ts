@@ -23,12 +23,12 @@ export function signalsOf(metric: string, known: readonly string[]): string[] {
       : family === "estimation"
         ? weightedBeside(name, metric)
         : family === "identify"
-        ? [`${name}.error_pct`]
-        : metric.includes("effort")
-          ? ["drive.voltage", "reference.voltage"]
-          : metric.includes("error")
-            ? ["model.tracking_error"]
-            : USUAL;
+          ? [`${name}.error_pct`]
+          : metric.includes("effort")
+            ? ["drive.voltage", "reference.voltage"]
+            : metric.includes("error")
+              ? ["model.tracking_error"]
+              : USUAL;
   const found = wanted.filter((signal) => known.includes(signal));
   return found.length > 0 ? found : known.slice(0, 2);
 }

@@ -7,7 +7,7 @@ import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { be, mount } from "../../testing/render";
-import { withWeighted } from "../../testing/weighted";
+import { besideEstimate, withWeighted } from "../../testing/weighted";
 import { LanesPanel } from "./lanes-panel";
 
 const { bench, status, events, frames } = await recordedBench("first-look");
@@ -128,7 +128,7 @@ it("subscribes to another window of time", async () => {
   const board = connect(bench);
   const { user } = mount(<LanesPanel />);
   await user.selectOptions(screen.getByRole("combobox", { name: "Time window" }), "100");
-  expect(board.subscriptions[0]).toMatchObject({ window_ms: 100 });
+  expect(besideEstimate(board.subscriptions)[0]).toMatchObject({ window_ms: 100 });
 });
 
 it("shows the card of the diagnoser", async () => {
@@ -163,10 +163,10 @@ it("races several diagnosers under one truth, with their delays and places", asy
 it("shows one of several diagnosers in full", async () => {
   const board = connect(rivals);
   const { user } = mount(<LanesPanel />);
-  expect(board.subscriptions).toHaveLength(3);
+  expect(besideEstimate(board.subscriptions)).toHaveLength(3);
   await user.selectOptions(screen.getByRole("combobox", { name: "Diagnosers shown" }), "second");
-  expect(board.subscriptions).toHaveLength(1);
-  expect(board.subscriptions[0].signals).toContain("second.probability.healthy");
+  expect(besideEstimate(board.subscriptions)).toHaveLength(1);
+  expect(besideEstimate(board.subscriptions)[0].signals).toContain("second.probability.healthy");
   expect(screen.getByRole("img", { name: /^Probability of/ })).toBeVisible();
 });
 
@@ -190,7 +190,7 @@ it("has no truth while a fault is to be found", async () => {
   const hidden = bench.signals.filter(({ name }) => !/^kalman\.(truth|unexplained)$/.test(name));
   const board = connect({ ...bench, signals: hidden, blind: { id: "b" } as never });
   mount(<LanesPanel />);
-  expect(board.subscriptions[0].signals).not.toContain("kalman.truth");
+  expect(besideEstimate(board.subscriptions)[0].signals).not.toContain("kalman.truth");
   expect(screen.queryByText("delay", { selector: "dt" })).not.toBeInTheDocument();
   const values = Object.fromEntries(kalman.names.map((name) => [`kalman.probability.${name}`, () => 0.1]));
   board.frame({ ...values, "kalman.winner": () => 0 }, { head: 2000 });

@@ -11,7 +11,7 @@ const { bench, status } = await recordedBench("first-look");
 const { kalman } = status.scores;
 const weighing = withWeighted(bench);
 const cells = (name: string) =>
-  within(screen.getByRole("row", { name: new RegExp(`^${name} `) }))
+  within(within(screen.getAllByRole("table")[0]).getByRole("row", { name: new RegExp(`^${name} `) }))
     .getAllByRole("cell")
     .map((cell) => cell.textContent?.replace(/\s/g, " "));
 
