@@ -41,8 +41,8 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
         <Delay last={last} dtMs={dtMs} />
       </Figure>
       <Figure name="correct">{score ? formatPercent(score.correct_fraction) : "–"}</Figure>
-      <WeightedEstimate id={id} />
       <Figure name="false switches">{score ? <FalseSwitches score={score} /> : "–"}</Figure>
+      <WeightedEstimate id={id} />
     </dl>
   );
 }
