@@ -22,6 +22,7 @@ from core.board.parse import changed
 from core.compile.segment import code_of, kept_code_of
 from core.errors import InputError
 from core.signals import Signal
+from scenarios.measure.estimation import estimation_metrics
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
@@ -142,7 +143,8 @@ def build_hosted(
 
 
 def _await_events(board: Board, scenario: Scenario) -> None:
-    """Let the events of a scenario wait on its board, and note its warnings."""
+    """Let the events of a scenario wait on its board, and note its warnings and whether it asks for estimates."""
+    board.estimates = scenario.asks_estimates
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
@@ -283,7 +285,8 @@ def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
     """Return the figures of a board from its trace, or the figures of a twin from the trace of all boards."""
     names = [name for name in figure_signals(board) if prefix + name in trace]
-    return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    metrics = measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    return metrics | (estimation_metrics(board) if scenario.asks_estimates else {})
 
 
 def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResult:

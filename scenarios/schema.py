@@ -125,6 +125,11 @@ class Scenario:
         if (self.samples or 0) > MAX_SAMPLES:
             raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
 
+    @property
+    def asks_estimates(self) -> bool:
+        """Whether figures of weighted estimates are asked for: by an option, or by an expectation."""
+        return self.head.metrics.estimation or any(one.metric.startswith("estimation.") for one in self.head.expect)
+
     def _checked(self, event: Document) -> list[Command]:
         """Return the commands of an event, which could be carried out on this bench."""
         commands = _commands(event)

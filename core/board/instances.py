@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple, cast
 
@@ -9,15 +10,20 @@ from core.block import Block, BlockParams, Context, FloatArray
 from core.board.library import PLAIN, Library
 from core.board.spec import Section, Spec
 from core.board.stages import stages
+from core.diagnose.arx import ArxBank
 from core.diagnose.hypothesis import ModelList
+from core.diagnose.kalman import KalmanBank
 from core.errors import InputError
 from core.identify.estimator import Estimator
 from core.loop.axes_score import AxesScore
 from core.loop.axis_measurement import AxisMeasurement
+from core.loop.difference_states import DifferenceStates
 from core.loop.effects import Effects
 from core.loop.estimate_score import EstimateScore
 from core.loop.measurement import Measurement
 from core.loop.score import Score
+from core.loop.weighted_parameters import WeightedParameters
+from core.loop.weighted_state import WeightedState
 
 
 class Instance(NamedTuple):
@@ -79,7 +85,7 @@ def instances(spec: Spec) -> list[Instance]:
     for name, section in spec.diagnosers.items():
         order.append(_waiting(spec, name, section))
         if scored(section.block):
-            order.append(_scoring(spec, name, section))
+            order += [_scoring(spec, name, section), *_estimating(spec, name, section)]
     if spec.axes:
         order += [_usual(name, section) for name, section in spec.generators.items()]
     else:
@@ -157,3 +163,27 @@ def _scoring(spec: Spec, name: str, section: Section) -> Instance:
     block: Any = AxesScore if section.block.axes else Score
     params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses)
     return Instance(f"{name}.score", name, block, params, spec.turns(section))
+
+
+def _estimating(spec: Spec, name: str, section: Section) -> list[Instance]:
+    """Return the blocks that weigh the models of a diagnoser, as far as its models have states and parameters."""
+    if section.block.axes:
+        return []
+    has_equations = issubclass(section.block, ArxBank)
+    has_states = has_equations or issubclass(section.block, KalmanBank)
+    weighing = WeightedState if has_states else WeightedParameters
+    every = spec.turns(section)
+    found = [Instance(weighted(name), weighted(name), weighing, section.params, every)]
+    if has_equations:  # a bank of filters puts out its states itself
+        found.insert(0, Instance(f"{name}.states", name, DifferenceStates, section.params, every))
+    return found
+
+
+def weighted(name: str) -> str:
+    """Return the name of the weighted estimate of a diagnoser."""
+    return f"{name}.weighted"
+
+
+def weighing_blocks(order: Iterable[Instance]) -> set[str]:
+    """Return the blocks among these that only weigh the models of diagnosers."""
+    return {one.key for one in order if one.block in (WeightedParameters, WeightedState, DifferenceStates)}

@@ -282,6 +282,8 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if source.endswith("?"):
         signal = source.removesuffix("?")
         return signal if signal in index else NOTHING
+    if source.startswith("^"):
+        return f"{instance.prefix.rpartition('.')[0]}.{source[1:]}"
     if not source.startswith("@"):
         found = behind(spec, instance.block.family, source)
         return found if found in index else source or f"{instance.prefix}.{port.name}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.block import BlockParams, Context, Equation, FloatArray, Stage, parameter
 from core.diagnose.bank import Bank
-from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
+from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, StatePorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
 from core.diagnose.lanes import Filters, PackedFilters
 from core.elementary import cos, sin
@@ -86,8 +86,8 @@ class KalmanBank(Bank):
     class State(Filters):
         """The filters."""
 
-    class Ports(BankPorts):
-        """Ports of every bank."""
+    class Ports(StatePorts):
+        """Ports of every bank of filters."""
 
     @classmethod
     def takes_steady_gains(cls, params: Any) -> bool:
@@ -137,8 +137,9 @@ class KalmanBank(Bank):
         p.noise11[:n], p.noise12[:n], p.noise22[:n] = noise[0, 0], noise[1, 0], noise[1, 1]
         if steady:
             gains = [steady_gain(*own, r, printed) for own in zip(each, caused, strict=True)]
-            p.gain1[:n], p.gain2[:n], p.psi[:n] = np.transpose(gains)
+            p.gain1[:n], p.gain2[:n], p.psi[:n], p.steady22[:n] = np.transpose(gains)
             p.inverse_psi[:n] = 1.0 / p.psi[:n]
+            p.steady11[:n], p.steady12[:n] = p.gain1[:n] * r, p.gain2[:n] * r
         p.count = len(hypotheses)
         p.sensor = r
         p.steady = steady
@@ -201,8 +202,8 @@ def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatAr
     return phi, total
 
 
-def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> tuple[float, float, float]:
-    """Return the filter gain and residual covariance in the limit.
+def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> tuple[float, float, float, float]:
+    """Return the filter gain, the residual covariance and the variance of the corrected velocity, in the limit.
 
     Parameters
     ----------
@@ -216,4 +217,5 @@ def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> 
     # a little noise on both states keeps the Riccati equation solvable when none is assumed
     prior = riccati(phi, np.array([[1.0, 0.0]]), noise + np.eye(2) * 1e-18, np.array([[r]]))
     psi = prior[0, 0] + r
-    return prior[0, 0] / psi, prior[1, 0] / psi, max(prior[0, 0], LEAST * r) if printed else psi
+    k1, k2 = prior[0, 0] / psi, prior[1, 0] / psi
+    return k1, k2, max(prior[0, 0], LEAST * r) if printed else psi, prior[1, 1] - k2 * prior[0, 1]

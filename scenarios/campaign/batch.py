@@ -73,7 +73,8 @@ def shape(scenario: Scenario) -> Any:
         return None
     spec = scenario.spec
     blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
-    return blocks, tuple(stages(spec)), tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
+    rest = spec.measuring, spec.dt_ms, scenario.samples, scenario.asks_estimates
+    return blocks, tuple(stages(spec)), tuple(spec.driving.items()), *rest
 
 
 def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcome], tell: Callable[[], None]) -> None:
@@ -82,6 +83,7 @@ def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcom
     samples = scenario.samples or DEFAULT_SAMPLES
     try:
         board = Board(scenario.spec)
+        board.estimates = scenario.asks_estimates
         board.pending = waiting(scenario, board)
         pattern, told = Pattern(board), running_warnings(board)
     except (InputError, Uneven):

@@ -17,7 +17,7 @@ from core.board.parse import parse
 from core.device.catalogue import device
 from core.errors import InputError
 from tests.core.fence import FencedBoard
-from tests.core.own.texts import FIT
+from tests.core.own.texts import FIT, ROOT
 from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_digest, make, play, run_digest
 
 TICKS = 120
@@ -91,6 +91,11 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
     if entry.name == "estimate_score":  # it belongs to a user's identifier
         return {"units.fit.source": FIT, "identifiers.fit.kind": "fit"}
+    if entry.name == "difference_states":
+        return {"diagnosers.kalman.kind": "self_tuning", "diagnosers.slow.kind": "anchored"}
+    if entry.name == "weighted_parameters":  # it belongs to a diagnoser whose models have no states
+        source = (ROOT / "docs/units/page.py").read_text("utf-8")
+        return {"units.page.source": source, "diagnosers.page.kind": "page"}
     return {}
 
 

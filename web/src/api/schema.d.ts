@@ -14015,7 +14015,8 @@ export interface components {
              * @default {
              *       "since_ms": 0,
              *       "tail_share": 0.25,
-             *       "beside": ""
+             *       "beside": "",
+             *       "estimation": false
              *     }
              */
             metrics?: components["schemas"]["Stretch"];
@@ -14792,6 +14793,11 @@ export interface components {
              * @default
              */
             beside?: string;
+            /**
+             * @description whether weighted estimates run headless too, for their figures
+             * @default false
+             */
+            estimation?: boolean;
         };
         /** Study */
         Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
