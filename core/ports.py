@@ -36,7 +36,9 @@ class Port:
     unit, meaning : str
         Shown to people.
     source : str
-        For inputs: the signal it is wired to by default. A signal that ends in ``?`` may be missing and reads 0 then.
+        For inputs: the signal it is wired to by default. A signal that ends in ``?`` may be missing and reads 0 then;
+        a source that begins with ``^`` is a signal of the block whose name comes before the last dot of this block's
+        prefix.
     labels : tuple of str
         For vectors: one name per component.
     each : str
@@ -94,7 +96,7 @@ def tap(
     hidden: bool = False,
     warning: str = "",
 ) -> Any:
-    """Declare a tap: a signal that people may look at and no block reads."""
+    """Declare a tap: an inner signal, worth a look and no part of the digest."""
     return Port("", unit, meaning, labels=labels, each=each, hidden=hidden, warning=warning, kind=TAP)
 
 

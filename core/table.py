@@ -29,10 +29,11 @@ class Table(BaseModel):
     @classmethod
     def _nothing_else_is_a_number(cls, values: Any) -> Any:
         """Refuse true in place of 1, and "1" or "true" in quotes: the writer has made a slip."""
+        fields = _fields(cls)
         for name, value in values.items() if isinstance(values, dict) else ():
-            if name not in cls.model_fields:
+            allowed = fields.get(name)
+            if allowed is None or type(value) is float:
                 continue
-            allowed = _kinds(cast(Hashable, cls.model_fields[name].annotation))
             takes_numbers = bool(allowed & {int, float})
             is_slip = isinstance(value, bool) and takes_numbers and bool not in allowed
             if is_slip or (allowed <= NUMBERS and any(map(_is_quoted, value if isinstance(value, list) else [value]))):
@@ -40,6 +41,12 @@ class Table(BaseModel):
                 refused = InitErrorDetails(type=kind, loc=(name,), input=value)
                 raise ValidationError.from_exception_data(cls.__name__, [refused])
         return values
+
+
+@cache
+def _fields(table: type[Table]) -> dict[str, frozenset[Any]]:
+    """Return the types that the value of each field, or an item of it, may have."""
+    return {name: _kinds(cast(Hashable, field.annotation)) for name, field in table.model_fields.items()}
 
 
 @cache

@@ -24,6 +24,7 @@ import numpy as np
 
 from core.block import Context, Oscillator
 from core.device.oscillator import is_soft, transition, within, yielded
+from core.elementary import exp
 from core.format import format_short
 from core.kernel import flush_tiny, kernel
 from core.ports import BlockPorts, reads
@@ -182,6 +183,13 @@ def weighed_voltages(p: Interval, s: Gathered) -> tuple[float, float]:
         return s.start, s.start
     later = p.later1 * x + p.later2 * s.gained2
     return s.start + p.first_share * x, s.start + p.second_share * later
+
+
+def shuttle_memory(device: Oscillator, h: float) -> float:
+    """Return the share that a mean keeps after an interval if its memory is the shuttle's, 2m/beta or a cycle."""
+    cycle = 2.0 * math.pi / device.natural_frequency
+    lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
+    return exp(-h / lasting)
 
 
 def difference_equation(device: Oscillator, rest: float, h: float) -> tuple[float, float, float, float]:

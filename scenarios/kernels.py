@@ -21,6 +21,7 @@ from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
 from core.compile import code
+from core.compile.keeping import SLICE
 from core.compile.machine import WIDTH
 from core.ports import RESERVED
 from scenarios.kernel_cache import COMPLETE, folder, prepare, prune
@@ -55,8 +56,8 @@ def loop() -> None:
     table, folds, watches = np.zeros((0, program.COLUMNS), np.int64), fold.begin(0), np.zeros((0, 3))
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
-    rows, trace = np.zeros((WIDTH, 0, WIDTH)), np.zeros((0, WIDTH, 0))
-    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, rows, no, trace, 0)
+    kept = 0, 0, np.zeros((SLICE, 0, WIDTH)), no, np.zeros((0, WIDTH, 0)), no, no
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, *kept, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     history.columns([0], 0, 1, 1)

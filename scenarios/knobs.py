@@ -57,7 +57,7 @@ def knobs(scenario: Scenario, entry: Expectation) -> list[Knob]:
 def _parts(scenario: Scenario, metric: str) -> Iterator[str]:
     """Yield the paths of the active blocks in the parts of a metric."""
     family, _, rest = metric.removeprefix("twins.").partition(".")
-    groups = {"diagnosis": "diagnosers", "identify": "identifiers"}
+    groups = {"diagnosis": "diagnosers", "estimation": "diagnosers", "identify": "identifiers"}
     head = f"{groups[family]}.{rest.partition('.')[0]}" if family in groups else "controller"
     section = section_at(scenario.spec, head)
     if section is not None:

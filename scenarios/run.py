@@ -17,12 +17,12 @@ from core.board.ensemble import Ensemble, make
 from core.board.fold import alike
 from core.board.hosted import NOTHING, Hosted
 from core.board.idle import leave_out_idle
-from core.board.observer import cautions
 from core.board.outside import Conclusion, Law
 from core.board.parse import changed
 from core.compile.segment import code_of, kept_code_of
 from core.errors import InputError
 from core.signals import Signal
+from scenarios.measure.estimation import estimation_metrics
 from scenarios.measure.metrics import device_metrics, measure
 from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.sentence import Sentence
@@ -143,7 +143,8 @@ def build_hosted(
 
 
 def _await_events(board: Board, scenario: Scenario) -> None:
-    """Let the events of a scenario wait on its board, and note its warnings."""
+    """Let the events of a scenario wait on its board, and note its warnings and whether it asks for estimates."""
+    board.estimates = scenario.asks_estimates
     for text in scenario.warnings:
         board.note("scenario", "warning", text)
     for position, commands in enumerate(scenario.events):
@@ -284,7 +285,8 @@ def all_figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario) 
 def figures(board: Board, trace: dict[str, FloatArray], scenario: Scenario, prefix: str = "") -> dict[str, float]:
     """Return the figures of a board from its trace, or the figures of a twin from the trace of all boards."""
     names = [name for name in figure_signals(board) if prefix + name in trace]
-    return measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    metrics = measure(board, {name: trace[prefix + name][: board.tick] for name in names}, scenario.head.metrics)
+    return metrics | (estimation_metrics(board) if scenario.asks_estimates else {})
 
 
 def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResult:
@@ -297,6 +299,6 @@ def _run_study(scenario: Scenario, board: Board, kept: list[Signal]) -> RunResul
     elapsed = time.perf_counter() - began
     figures = np.array([metrics[name] for name in sorted(metrics)])
     digest = hashlib.sha256(alike(figures.view(np.uint64)).tobytes()).hexdigest()
-    told = [*scenario.warnings, *cautions(board.spec)]
+    told = [*scenario.warnings, *board.spec.cautions]
     nothing = {one.name: np.empty(0) for one in kept}
     return RunResult(scenario, board.spec.seed, fresh, digest, elapsed, metrics, told, nothing)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any, Literal
 
@@ -15,7 +16,7 @@ from core.board.condition import parse_condition
 from core.board.document import Document, has, says_the_same
 from core.board.ensemble import twin_specs
 from core.board.packages import carried
-from core.board.parse import parse
+from core.board.parse import changed, parse
 from core.board.spec import Spec, fields
 from core.board.wiring import signals_of
 from core.errors import InputError, from_validation, short, unknown, unknown_field
@@ -71,12 +72,8 @@ class Scenario:
 
     Attributes
     ----------
-    document : dict
-        The document it was read from, with the installed packages whose blocks it names.
     head : Head
         Title, length, events, expectations.
-    bench : dict
-        The part of the document that describes the bench.
     spec : Spec
         The checked bench; every board of the scenario is built from it.
     twins : dict of Spec
@@ -87,13 +84,14 @@ class Scenario:
         The commands of every event, in the order they take effect.
     """
 
+    _write: Callable[[], Document]
+
     def __init__(self, document: Document, like: Scenario | None = None) -> None:
         if not isinstance(document, dict):
             raise InputError("a scenario must be a table", "scenario")
         check_admitted(document)
         self.document = document = carried(_with_open_ends(without_address(document)))
         head = {key: value for key, value in document.items() if key in HEAD}
-        self.bench: Document = {key: value for key, value in document.items() if key not in HEAD}
         self._head, known = head, like._head if like is not None else {}
         is_alike = head.keys() == known.keys() and all(says_the_same(value, known[key]) for key, value in head.items())
         try:
@@ -107,11 +105,7 @@ class Scenario:
         if foreign:
             raise unknown_field(foreign[0], (*HEAD, *allowed), foreign[0])
         self.spec: Spec = parse(self.bench, like.spec if like is not None else None)
-        if (self.samples or 0) > MAX_SAMPLES:
-            raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
-        if self.spec.record is not None and (self.samples or 0) > self.spec.record.samples:
-            field = "samples" if self.head.samples is not None else "duration_ms"
-            raise InputError(f"is {self.samples} samples, the record has {self.spec.record.samples}", field)
+        self._check_length()
         if (beside := self.head.metrics.beside) and beside not in self.spec.diagnosers:
             raise unknown("diagnoser", beside, self.spec.diagnosers, "metrics.beside")
         self.twins = twin_specs(self.bench)
@@ -126,6 +120,18 @@ class Scenario:
             for path in entry.fitted:
                 if not has(document, path):
                     raise InputError(f"this scenario has no {short(path)}", f"expect.{position}.fitted")
+
+    def _check_length(self) -> None:
+        if (self.samples or 0) > MAX_SAMPLES:
+            raise InputError(f"is {self.samples} samples, at most {MAX_SAMPLES}", "duration_ms")
+        if self.spec.record is not None and (self.samples or 0) > self.spec.record.samples:
+            field = "samples" if self.head.samples is not None else "duration_ms"
+            raise InputError(f"is {self.samples} samples, the record has {self.spec.record.samples}", field)
+
+    @property
+    def asks_estimates(self) -> bool:
+        """Whether figures of weighted estimates are asked for: by an option, or by an expectation."""
+        return self.head.metrics.estimation or any(one.metric.startswith("estimation.") for one in self.head.expect)
 
     def _checked(self, event: Document) -> list[Command]:
         """Return the commands of an event, which could be carried out on this bench."""
@@ -164,6 +170,34 @@ class Scenario:
             Naming the field, or the line of malformed TOML.
         """
         return cls(text if isinstance(text, dict) else read_toml(text, "scenario"), like)
+
+    def with_numbers(self, values: dict[str, float], write: Callable[[], Document]) -> Scenario:
+        """Return the scenario that has other numbers of the bench at some paths, and is alike otherwise.
+
+        ``write`` returns its document when it is first asked for.
+
+        Raises
+        ------
+        InputError
+            When it is not valid; the field may be named as the normal form has it.
+        """
+        found = object.__new__(Scenario)
+        vars(found).update(vars(self), spec=changed(self.spec, values), _write=write)
+        for name in ("document", "bench"):
+            vars(found).pop(name, None)
+        found.twins = twin_specs(found.bench) if self.twins else self.twins
+        found._check_length()
+        return found
+
+    @cached_property
+    def document(self) -> Document:
+        """The document it was read from, with the installed packages whose blocks it names."""
+        return self._write()
+
+    @cached_property
+    def bench(self) -> Document:
+        """The part of the document that describes the bench."""
+        return {key: value for key, value in self.document.items() if key not in HEAD}
 
     @property
     def id(self) -> str:

@@ -63,4 +63,6 @@ def figure_signals(board: Board) -> list[str]:
     moved = rate.traced(board) if board.spec.axes else TRACED_FIGURES
     names = [*moved, *(f"{name}.{port}" for name in board.spec.diagnosers for port in TRACED_VERDICTS)]
     names += [f"{name}.error_pct" for name in board.spec.identifiers]
-    return [name for name in names if name in board.signals]
+    found = [name for name in names if name in board.signals]
+    unused = {f"{name}.winner" for name in board.spec.diagnosers if f"{name}.verdict" not in found}
+    return [name for name in found if name not in unused]

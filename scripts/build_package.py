@@ -32,10 +32,11 @@ class BuildHook(BuildHookInterface[Any]):
         build_data["force_include"] |= {PAGE: PAGE_IN_WHEEL, KERNELS: KERNELS}
 
     def _run(self, doing: str, *command: str) -> None:
-        """Run a command in the checkout, with its own program first in the path."""
+        """Run a command in the checkout, with its own program and its packages first; pipx would leave these out."""
         self.app.display_waiting(doing)
-        path = os.pathsep.join((str(Path(command[0]).parent), os.environ.get("PATH", "")))
-        ended = subprocess.run(command, cwd=self.root, env={**os.environ, "PATH": path}, check=False)
+        first = {"PATH": str(Path(command[0]).parent), "PYTHONPATH": self.root}
+        paths = {name: os.pathsep.join(filter(None, (path, os.environ.get(name)))) for name, path in first.items()}
+        ended = subprocess.run(command, cwd=self.root, env={**os.environ, **paths}, check=False)
         if ended.returncode:
             self.app.abort(f"{doing} failed; the lines above say why")
 

@@ -7,13 +7,13 @@ that trips, or whose commands change which blocks run, cannot stay: it runs alon
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from core.block import FloatArray, IntArray
-from core.board import lost, program, steps
+from core.board import lost, program
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
@@ -32,10 +32,12 @@ from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.compile.folding import folding
 from core.compile.instructions import address_of, call
+from core.compile.keeping import SLICE, keeping, sorting
 from core.compile.machine import WIDTH
 from core.kernel import kernel
 from core.ports import RESERVED, TICK, TIME_MS
 
+NOTHING: Mapping[str, Sequence[str]] = {}
 ALIGNMENT = 8
 """Numbers of a cache line, at which rows of lanes begin."""
 
@@ -54,9 +56,13 @@ def run(
     folds: Words,
     folded: IntArray,
     sizes: IntArray,
+    keep: int,
+    sort: int,
     rows: FloatArray,
     columns: IntArray,
     trace: FloatArray,
+    ends: IntArray,
+    shape: IntArray,
     trip: int,
 ) -> int:
     """Run up to ``n`` ticks of all boards; return how many ran, fewer when a board trips at the last of them.
@@ -69,13 +75,20 @@ def run(
         Address of the code that folds a tick (``core.compile.folding``).
     folds, folded, sizes : ndarray
         The folds, the places of the outputs that count, and how many these are and all outputs.
-    rows, columns : ndarray
-        Where signals are kept, shape (WIDTH, kept, WIDTH), and their places.
+    keep, sort : int
+        Addresses of the code that keeps signals of a tick, and sorts a slice of them (``core.compile.keeping``).
+    rows, columns, ends : ndarray
+        Where signals and sums are kept, shape (SLICE, kept, WIDTH), the places of the signals, and the number of rows
+        followed by where the places of each begin and end.
     trace : ndarray, shape (kept, WIDTH, ticks)
-        Where they go, sorted by board, ``WIDTH`` ticks at a time; the last few ticks stay in ``rows``.
+        Where they go, sorted by board, a slice of ticks at a time; the ticks after the last slice stay in ``rows``.
+    shape : ndarray
+        How many are kept, and the ticks of the trace.
     """
     p_address, s_address, w_address, io_address = address_of(p), address_of(s), address_of(w), address_of(io)
     fold_address, folded_address, size_address = address_of(folds), address_of(folded), address_of(sizes)
+    row_address, column_address, trace_address = address_of(rows), address_of(columns), address_of(trace)
+    end_address, shape_address, row_size = address_of(ends), address_of(shape), 8 * WIDTH * rows.shape[1]
     for i in range(n):
         tick = first_tick + i
         for k in range(WIDTH):
@@ -83,14 +96,10 @@ def run(
             w[TIME_MS, k] = tick * dt_ms
         walk(table, tick, WIDTH, p_address, s_address, w_address, io_address)
         call(fold, w_address, fold_address, folded_address, size_address)
-        row = i % WIDTH
-        for c in range(len(columns)):
-            rows[row, c] = w[columns[c]]
-        if row == WIDTH - 1:
-            for c in range(len(columns)):
-                for k in range(WIDTH):
-                    for t in range(WIDTH):
-                        trace[c, k, tick - row + t] = rows[t, c, k]
+        row = tick % SLICE
+        call(keep, w_address, row_address + row * row_size, column_address, end_address)
+        if row == SLICE - 1:
+            call(sort, row_address, trace_address + 8 * (tick - row), column_address, shape_address)
         tripped = False
         for k in range(WIDTH):
             tripped = tripped or w[trip, k] != 0.0
@@ -114,6 +123,8 @@ class Abreast:
         The signals to keep.
     samples : int
         Ticks of the longest run.
+    sums : mapping
+        The sums of signals to keep in addition, by name.
 
     Raises
     ------
@@ -128,18 +139,22 @@ class Abreast:
         pending: Sequence[PendingQueue],
         columns: Sequence[str],
         samples: int,
+        sums: Mapping[str, Sequence[str]] = NOTHING,
     ) -> None:
         self._pattern = pattern
         wiring = pattern.board.wiring
         self._p, self._s, self._w = (_lanes(array) for array in (wiring.p, wiring.s, wiring.w))
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
-        self._columns = np.array([wiring.index[name] for name in columns], dtype=np.int64)
-        self._trace = np.empty((len(columns), WIDTH, samples))
-        self._rows = np.empty((WIDTH, len(columns), WIDTH))
+        parts: dict[str, Sequence[str]] = {**{name: (name,) for name in columns}, **sums}
+        self._columns = np.array([wiring.index[name] for own in parts.values() for name in own], dtype=np.int64)
+        self._ends = np.array([len(parts), *np.cumsum([0, *map(len, parts.values())])], dtype=np.int64)
+        self._trace = np.empty((len(parts), WIDTH, samples))
+        self._rows = np.empty((SLICE, len(parts), WIDTH))
+        self._shape = np.array([len(parts), samples], dtype=np.int64)
         self._folded = pattern.folded + RESERVED
         self._sizes = np.array([len(self._folded), self._folds.shape[1]], dtype=np.int64)
         self._fold = folding((A, B), SHIFTS, NONE, RESERVED)
-        self._names, self._trip = list(columns), wiring.trip
+        self._names, self._trip = list(parts), wiring.trip
         self.boards: list[Lane] = []
         self._leaders: list[Lane] = []
         self._read, self._packed = {**pattern.read}, set[int]()
@@ -220,19 +235,18 @@ class Abreast:
             self._silence(tripped)
         for board in self._leaders:
             board.tell_faults()
+        rest = self.tick % SLICE
+        self._trace[:, :, self.tick - rest : self.tick] = self._rows[:rest].transpose(1, 2, 0)
         return [not gone for gone in tripped]
 
     def trace(self, lane: int) -> dict[str, FloatArray]:
-        """Return the signals kept of a board, by name."""
+        """Return the signals and sums kept of a board, by name."""
         return {name: self._trace[column, lane, : self.tick] for column, name in enumerate(self._names)}
 
     def _run(self, n: int) -> int:
         arrays = (self._table, self._p, self._s, self._w, self._io, self._fold, self._folds, self._folded, self._sizes)
-        kept = self._rows, self._columns, self._trace
-        ran = int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
-        end, rest = self.tick + ran, ran % WIDTH
-        self._trace[:, :, end - rest : end] = self._rows[:rest].transpose(1, 2, 0)
-        return ran
+        kept = keeping(), sorting(), self._rows, self._columns, self._trace, self._ends, self._shape
+        return int(run(n, self.tick, self.boards[0].dt_ms, *arrays, *kept, self._trip))
 
     def _silence(self, tripped: list[bool]) -> None:
         """Let the lane of a tripped board follow the lane of a board that has not tripped."""
@@ -262,7 +276,7 @@ class Abreast:
             raise Uneven("other choices")
         self._io = first.io
         self._table = first.table[rows]
-        self._table[:, program.ADDRESS] = [steps.address(first, row, WIDTH) for row in rows]
+        self._table[:, program.ADDRESS] = [self._pattern.address(row) for row in rows]
 
 
 def _apart(wiring: Wiring) -> Wiring:

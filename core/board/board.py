@@ -38,7 +38,7 @@ CHUNK = 512
 COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 LISTS = 150
 """Bytes that a checkpoint takes for each block beside its numbers."""
-SHARED = ("spec", "base", "compiled", "fuses", "tick", "lost")
+SHARED = ("spec", "base", "compiled", "fuses", "tick", "lost", "estimates")
 """Parts that every copy of a board has for itself (``COPIED``), and parts that never change in place (``SHARED``)."""
 
 
@@ -64,6 +64,8 @@ class Board:
     """
 
     chunk = CHUNK
+    estimates = False
+    """Whether the weighted estimates are asked for, so that they run though nothing reads them."""
 
     def __init__(self, bench: Document | Spec, *, compiled: bool = True) -> None:
         self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)

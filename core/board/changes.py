@@ -141,7 +141,7 @@ def switched(spec: Spec, command: Switch) -> dict[str, Any]:
 def disengage(board: ChangeableBoard) -> None:
     """Take the voltage off, as a trip does."""
     for instance in board.wiring.instances:
-        if instance.prefix.split(".")[0] == "drive":
+        if instance.prefix.split(".")[0] in ("drive", "amplifier"):
             for port in instance.block.outputs:
                 board.wiring.w[board.wiring.index[f"{instance.prefix}.{port.name}"]] = 0.0
 
@@ -233,12 +233,17 @@ def _change(board: ChangeableBoard, spec: Spec) -> None:
 
 
 def _exchanged(old: Wiring, spec: Spec) -> Wiring:
-    """Return the wiring of a bench in which a block has been exchanged; all other blocks keep their states."""
+    """Return the wiring of a bench in which a block has been exchanged, has come or is gone; the others keep on."""
     new = wire(spec, old)
     assert new.signals.names == old.signals.names
-    new.w[:] = old.w
+    for name, place in new.index.items():
+        # until an amplifier comes, the command arrives as it is
+        known = name if name in old.index else name.replace("amplifier.", "drive.", 1)
+        if known in old.index:
+            new.w[place] = old.w[old.index[known]]
     engage(spec, new.index, new.w)
-    for before, after in zip(old.instances, new.instances, strict=True):
-        if before.block is after.block:
-            new.state_of(after.key)[:] = old.state_of(before.key)
+    for after in new.instances:
+        row = old.rows.get(after.key)
+        if row is not None and old.instances[row].block is after.block:
+            new.state_of(after.key)[:] = old.state_of(after.key)
     return new

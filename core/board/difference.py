@@ -13,7 +13,8 @@ from core.board.wiring import Wiring, engage, every_of, ports_of, unread
 def change(wiring: Wiring, before: Spec, spec: Spec) -> bool:
     """Turn the wiring of a bench into the wiring of another with the same blocks, in place; say whether it worked.
 
-    It is not possible where a block reads more or fewer numbers than before.
+    It is not possible where a block reads more or fewer numbers than before, or where a stage of the board comes or
+    goes.
 
     Only rows whose parameters or context differ are packed again; states stay. When a block refuses its parameters
     nothing has changed.

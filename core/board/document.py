@@ -33,6 +33,9 @@ ONE_AMPLITUDE = {"reference.amplitude_v": "amplitude_um", "reference.amplitude_u
 ONE_DRIVE = {"plant.drive": ("drive", "kind"), "drive.kind": ("plant", "drive")}
 """The plant or the drive gives the kind of drive; setting one drops the other."""
 
+ONE_STEP = ("bits", "quantum_v", "quantum_un", "quantum_um")
+"""Spellings of the step of a converter; setting one drops the others."""
+
 LONGEST_PATH = 60
 """Characters that an error message shows of a long path."""
 
@@ -60,6 +63,7 @@ SECTIONS = (
     "sensor",
     "sensors",
     "drive",
+    "board",
     "guard",
     "identifiers",
     "diagnosers",
@@ -185,6 +189,8 @@ def _write(doc: Document, path: str, value: Any) -> None:
         table[_position(parts[-1], table, path)] = copy.deepcopy(value)
         return
     table[parts[-1]] = copy.deepcopy(value)
+    if parts[-1] in ONE_STEP and value:
+        _drop_other_steps(doc, path)
     if path in ONE_AMPLITUDE:
         table.pop(ONE_AMPLITUDE[path], None)
     if path in ONE_DRIVE:
@@ -197,6 +203,21 @@ def _write(doc: Document, path: str, value: Any) -> None:
         section, family, key, shared = exchanged
         fields = {key, *shared, *library_of(doc).block(family, value, path).Params.model_fields}
         doc[section] = {name: entry for name, entry in table.items() if name in fields}
+
+
+def _drop_other_steps(doc: Document, path: str) -> None:
+    """Leave a converter the spelling of its step that a path has just set; a sensor in use may have parked another."""
+    for kept in (path, _kept(path, doc)):
+        *way, leaf = kept.split(".")
+        table: Any = doc
+        for part in way:
+            if not isinstance(table.get(part), dict):
+                break
+            table[part] = dict(table[part])
+            table = table[part]
+        else:
+            for name in {*ONE_STEP} - {leaf}:
+                table.pop(name, None)
 
 
 def _exchanged(path: str) -> tuple[str, str, str, tuple[str, ...]] | None:

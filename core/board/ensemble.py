@@ -30,7 +30,8 @@ from core.signals import Signal, SignalTable
 MOST = 3
 """Twins of a board; four boards together."""
 
-OWN = ("plant", "slots", "controller", "controllers", "sensor", "sensors", "diagnosers", "readouts", "drive", "guard")
+OWN = ("plant", "slots", "controller", "controllers", "sensor", "sensors", "diagnosers", "readouts", "drive", "board",
+       "guard")  # fmt: skip
 """Sections a twin may have of its own; it shares all others with the board."""
 
 SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.displacement", "reference.voltage")

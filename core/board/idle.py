@@ -1,4 +1,4 @@
-"""Blocks that need not run while their signals are not watched: controllers and sensors without effect to the end."""
+"""Blocks that need not run while their signals are not watched: they have no effect to the end."""
 
 from __future__ import annotations
 
@@ -6,39 +6,49 @@ import re
 
 from core.board.board import Board
 from core.board.ensemble import Ensemble
+from core.board.instances import weighing_blocks
 from core.board.pending import PendingQueue
 from core.board.wiring import needed
 
 
 def leave_out_idle(board: Board) -> None:
-    """Leave out the controllers that never drive and whose signals no other block reads; no bit of a digest changes.
+    """Leave out the blocks whose signals neither the loop nor people read; no bit of a digest changes.
 
     Call it at the first tick, when all commands of the run wait.
     """
     for one in [board, *(board.twins.values() if isinstance(board, Ensemble) else ())]:
-        wiring, idle = one.wiring, idle_controllers(one, board.pending)
+        wiring, idle = one.wiring, idle_blocks(one, board.pending, board.estimates)
         wiring.left_out = {row for row, instance in enumerate(wiring.instances) if instance.key in idle}
         wiring.is_changed = True
         one.link()
 
 
 def looking_on(board: Board) -> set[str]:
-    """Return the blocks without effect: idle controllers, and sensors that rest to the end."""
-    return idle_controllers(board, board.pending) | (
-        {*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending)))
-    )
+    """Return the blocks without effect: idle blocks, and sensors that rest to the end."""
+    idle = idle_blocks(board, board.pending, board.estimates)
+    return idle | ({*board.spec.sensors} - needed(board.spec, sorted(_named(board.pending))))
 
 
-def idle_controllers(board: Board, pending: PendingQueue) -> set[str]:
-    """Return the controllers that drive neither now nor by a command that waits, and that nothing else reads."""
-    spec, wiring = board.spec, board.wiring
-    idle = {*spec.controllers} - {*spec.driving.values()} - _named(pending)
+def idle_blocks(board: Board, pending: PendingQueue, wants_estimates: bool) -> set[str]:
+    """Return the blocks that nothing reads.
+
+    These are controllers that drive neither now nor by a command that waits, and weighted estimates that nobody wants.
+    """
+    spec, wiring, named = board.spec, board.wiring, _named(pending)
+    idle = {*spec.controllers} - {*spec.driving.values()} - named
+    if not wants_estimates:
+        conditions = " ".join(entry.command.when or "" for entry in pending)
+        weighing = weighing_blocks(wiring.instances)
+        idle |= weighing - {one.block for one in wiring.signals if one.block in weighing and one.name in conditions}
     places = {wiring.index[signal.name]: signal.block for signal in wiring.signals if signal.block in idle}
-    for row, instance in enumerate(wiring.instances):
-        if instance.key not in idle:
-            read = wiring.ports(row)[: len(instance.block.inputs)].tolist()
-            idle -= {places[place] for place in read if place in places}
-    return idle
+    rows = [*enumerate(wiring.instances)]
+    while True:  # a block that is read may read another
+        running = [row for row, instance in rows if instance.key not in idle]
+        inputs = [wiring.ports(row)[: len(wiring.instances[row].block.inputs)].tolist() for row in running]
+        read = {places[place] for own in inputs for place in own if place in places} & idle
+        if not read:
+            return idle
+        idle -= read
 
 
 def _named(pending: PendingQueue) -> set[str]:

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple, cast
 
 from core.block import Block, BlockParams, Context, FloatArray
 from core.board.library import PLAIN, Library
 from core.board.spec import Section, Spec
+from core.board.stages import stages
+from core.diagnose.arx import ArxBank
 from core.diagnose.hypothesis import ModelList
+from core.diagnose.kalman import KalmanBank
 from core.errors import InputError
 from core.identify.estimator import Estimator
 from core.loop.axes_score import AxesScore
 from core.loop.axis_measurement import AxisMeasurement
+from core.loop.difference_states import DifferenceStates
 from core.loop.effects import Effects
 from core.loop.estimate_score import EstimateScore
 from core.loop.measurement import Measurement
 from core.loop.record_score import RecordScore
 from core.loop.score import Score
+from core.loop.weighted_parameters import WeightedParameters
+from core.loop.weighted_state import WeightedState
 
 
 class Instance(NamedTuple):
@@ -70,7 +77,8 @@ def instances(spec: Spec) -> list[Instance]:
     order.append(Instance("effects", "effects", Effects, Effects.Params()))
     for name, absent in _absent_faults(spec.library, spec.axes).items():
         order.append(absent._replace(params=spec.faults[name]) if name in spec.faults else absent)
-    order += _measured(spec)
+    acting = stages(spec)
+    order += _stage("sampler", acting, spec.axes) + _measured(spec)
     for name, section in spec.identifiers.items():
         order.append(_waiting(spec, name, section))
         if issubclass(section.block, Estimator):
@@ -78,7 +86,7 @@ def instances(spec: Spec) -> list[Instance]:
     for name, section in spec.diagnosers.items():
         order.append(_waiting(spec, name, section))
         if scored(section.block):
-            order.append(_scoring(spec, name, section))
+            order += [_scoring(spec, name, section), *_estimating(spec, name, section)]
     if spec.axes:
         order += [_usual(name, section) for name, section in spec.generators.items()]
     else:
@@ -86,7 +94,8 @@ def instances(spec: Spec) -> list[Instance]:
     for slot in spec.driving:  # a later slot reads the outputs of an earlier slot
         order += [_usual(name, section) for name, section in spec.controllers.items() if section.block.slot == slot]
     order += [_usual(name, section) for name, section in spec.readouts.items()]
-    return [*order, *_at_each_axis("drive", spec.drive, spec.axes), *_at_each_axis("guard", spec.guard, spec.axes)]
+    order += _at_each_axis("drive", spec.drive, spec.axes) + _stage("amplifier", acting, spec.axes)
+    return order + _at_each_axis("guard", spec.guard, spec.axes)
 
 
 def _measured(spec: Spec) -> list[Instance]:
@@ -99,6 +108,11 @@ def _measured(spec: Spec) -> list[Instance]:
                 order += _at_each_axis(name, section, spec.axes if section.block.per_axis else ())
     measurement = AxisMeasurement if spec.axes else Measurement
     return order + _at_each_axis("sensor", Section(measurement, measurement.Params()), spec.axes)
+
+
+def _stage(key: str, acting: dict[str, Section], axes: tuple[str, ...]) -> list[Instance]:
+    """Return the instances of a stage of the board, none if it is off."""
+    return _at_each_axis(key, acting[key], axes) if key in acting else []
 
 
 def _at_each_axis(key: str, section: Section, axes: tuple[str, ...]) -> list[Instance]:
@@ -153,3 +167,27 @@ def _scoring(spec: Spec, name: str, section: Section) -> Instance:
         block, labels = RecordScore, {"labels": tuple(spec.record.hypotheses)}
     params = block.Params.model_construct(hypotheses=cast(ModelList, section.params).hypotheses, **labels)
     return Instance(f"{name}.score", name, block, params, spec.turns(section))
+
+
+def _estimating(spec: Spec, name: str, section: Section) -> list[Instance]:
+    """Return the blocks that weigh the models of a diagnoser, as far as its models have states and parameters."""
+    if section.block.axes:
+        return []
+    has_equations = issubclass(section.block, ArxBank)
+    has_states = has_equations or issubclass(section.block, KalmanBank)
+    weighing = WeightedState if has_states else WeightedParameters
+    every = spec.turns(section)
+    found = [Instance(weighted(name), weighted(name), weighing, section.params, every)]
+    if has_equations:  # a bank of filters puts out its states itself
+        found.insert(0, Instance(f"{name}.states", name, DifferenceStates, section.params, every))
+    return found
+
+
+def weighted(name: str) -> str:
+    """Return the name of the weighted estimate of a diagnoser."""
+    return f"{name}.weighted"
+
+
+def weighing_blocks(order: Iterable[Instance]) -> set[str]:
+    """Return the blocks among these that only weigh the models of diagnosers."""
+    return {one.key for one in order if one.block in (WeightedParameters, WeightedState, DifferenceStates)}

@@ -12,6 +12,7 @@ from core.board.instances import Instance
 from core.board.log import Log, LogEntry
 from core.board.pattern import numbers, unlike
 from core.board.pending import PendingQueue
+from core.board.program import P_OFFSET
 from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.loop.score import Scores
@@ -104,12 +105,14 @@ class Lane(Board):
         place = instance.every, instance.axis
         context = self.spec.context(*place)
         own, _, read = numbers(instance, self.spec)
+        start = int(self.wiring.table[row, P_OFFSET])
+        part = slice(start, start + len(own))
         for lane in self.followers:
             if place not in lane._unlike:
                 lane._unlike[place] = unlike(lane.spec.context(*place), context)
             is_shared = lane._unlike[place].isdisjoint(read)
             lane.wiring.instances[row] = instance
-            lane.wiring.packed(row)[:] = own if is_shared else instance.packed(lane.spec.context(*place))
+            lane.wiring.p[part] = own if is_shared else instance.packed(lane.spec.context(*place))
 
     def _do(self, command: Command, actor: str) -> LogEntry | None:  # type: ignore[override]
         changes.carry_out(self, command)

@@ -10,7 +10,7 @@ from core.board.spec import Section, Spec
 from core.cards import is_live
 from core.errors import InputError, unknown
 
-LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "guard")
+LIVE_SECTIONS = ("environment", "plant", "reference", "model", "drive", "board", "guard")
 
 
 def live_change(spec: Spec, values: dict[str, Any]) -> tuple[Spec, dict[str, Any], dict[str, Any]]:

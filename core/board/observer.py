@@ -118,7 +118,7 @@ class Observer:
         if spec is self._cautioned:
             return []
         self._cautioned = spec
-        new = [text for text in cautions(spec) if text not in self._cautions]
+        new = [text for text in spec.cautions if text not in self._cautions]
         self._cautions.update(new)
         return [{"kind": "warning", "text": text, "tick": tick} for text in new]
 
@@ -185,28 +185,11 @@ def warnings(wiring: Wiring) -> dict[str, str]:
     }
 
 
-def cautions(spec: Spec) -> list[str]:
-    """Return warnings about the loss by the blocks' assumptions of the voltage, at its strongest tone."""
-    _, hz = max((abs(volts), hz) for hz, volts in (*_tones(spec), (0.0, 0.0)))
-    found = []
-    for name, section in {**spec.identifiers, **spec.diagnosers}.items():
-        text = section.block.caution(section.params, spec.context(spec.turns(section)), hz)
-        found += [f"{name} {text}"] if text else []
-    return found
-
-
-def _tones(spec: Spec) -> list[tuple[float, float]]:
-    """Return frequency and amplitude of the tones of the reference."""
-    waveform: Any = spec.reference.block
-    found: list[tuple[float, float]] = waveform.tones(spec.reference.params, spec.context())
-    return found
-
-
 def _aliases(spec: Spec, name: str, label: str) -> str:
     """Name the changes that have the same response at the tones of the drive as a hypothesis."""
     hypotheses = hypotheses_of(spec.diagnosers[name].params)
     found = [
         f"{part} x {format_short(factor, '')}"
-        for part, factor in equivalents(hypotheses, label, spec.context().device, _tones(spec)).items()
+        for part, factor in equivalents(hypotheses, label, spec.context().device, spec.tones).items()
     ]
     return f" (the same here: {', '.join(found)})" if found else ""

@@ -25,9 +25,13 @@ from core.board.fitting import driving, refuse_what_does_not_fit, suited
 from core.board.instances import instances
 from core.board.library import IDENTIFIER, Library, library_of
 from core.board.spec import OF_CONTEXT, BoardSettings, Section, Spec, fields
+from core.board.stages import STAGES, AxesBoardParams, BoardParams
+from core.converter import twice_given
 from core.device.catalogue import device as build_device
 from core.device.device import Device
 from core.errors import InputError, from_validation, short
+from core.loop.amplifier import Amplifier
+from core.loop.axis_amplifier import AxisAmplifier
 from core.loop.axis_drive import AxisDrive
 from core.loop.axis_guard import AxisGuard
 from core.loop.drive import Drive
@@ -104,9 +108,10 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     if before is not None and before.library is not library:
         before = None  # a name may mean another block
     known = before.document if before is not None else {}
+    differing = {key for key in (*doc, *known) if doc.get(key) is not known.get(key)}
 
     def same(*keys: str) -> bool:
-        return before is not None and all(doc.get(key) is known.get(key) for key in keys)
+        return before is not None and differing.isdisjoint(keys)
 
     tables = sections()
     loose = [key for key in doc if key not in tables]
@@ -130,9 +135,9 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
     in_use = (doc["controller"]["kind"], doc["sensor"]["kind"], *doc.get("slots", {}).values())
     refuse_what_does_not_fit(doc, plant.block)
 
-    def alone(key: str, block: type[Block]) -> Section:
+    def alone(key: str, block: type[Block], params: type[BlockParams] | None = None) -> Section:
         kept: Section | None = getattr(before, key) if same(key) else None
-        return kept or Section(block, _params(block, doc.get(key, {}), key))
+        return kept or Section(block, _params(params or block.Params, doc.get(key, {}), key))
 
     def all_of(key: str, family: str) -> dict[str, Section]:
         kept: dict[str, Section] = getattr(before, key, {})
@@ -172,6 +177,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         reference=before.reference if before is not None and same("reference") else _reference(library, doc),
         model=alone("model", Model),
         drive=drive,
+        board=alone("board", AxisAmplifier, AxesBoardParams) if axes else alone("board", Amplifier, BoardParams),
         guard=alone("guard", AxisGuard if axes else RecordGuard if plant.block is RecordPlant else Guard),
         measuring=_measuring(library, doc["sensor"]["kind"]),
         sensors=all_of("sensors", "sense"),
@@ -215,7 +221,7 @@ def _driven(library: Library, doc: Document, device: Device) -> tuple[Section, S
         doc["plant"] = {**doc["plant"], "model": device.usual_plant}
     section = _section(library, "plant", plant.pop("model", device.usual_plant), plant, "plant", "model")
     stage = AxisDrive if section.block.axes else RecordDrive if section.block is RecordPlant else Drive
-    return section, Section(stage, _params(stage, drive, "drive"))
+    return section, Section(stage, _params(stage.Params, drive, "drive"))
 
 
 def _recorded(spec: Spec) -> Spec:
@@ -251,7 +257,7 @@ def _named_apart(spec: Spec) -> None:
     chosen = [(key, name) for key in CHOSEN for name in getattr(spec, key)]
     nothing: dict[str, Any] = {key: {} for key in CHOSEN}
     others = instances(replace(spec, **nothing)) if chosen else []
-    taken = {*CLOCK, *(other.prefix.split(".")[0] for other in others)}
+    taken = {*CLOCK, *STAGES, *(other.prefix.split(".")[0] for other in others)}
     for key, name in chosen:
         if name in taken:
             text = f"is the name of a part of the bench; taken: {', '.join(sorted(taken))}"
@@ -277,7 +283,7 @@ def _section(library: Library, family: str, kind: object, table: Document, field
     every = rest.pop("every", 1)
     if not isinstance(every, int) or isinstance(every, bool) or not 1 <= every <= 10000:
         raise InputError(f"must be a whole number from 1 to 10000, got {short(every)}", f"{field}.every")
-    return Section(block, _params(block, rest, field), every)
+    return Section(block, _params(block.Params, rest, field), every)
 
 
 def _measuring(library: Library, kind: object) -> str:
@@ -293,11 +299,16 @@ def _named(library: Library, family: str, key: str, name: str, table: Document) 
     return _chosen(library, family, table, f"{key}.{name}")
 
 
-def _params(block: type[Block], values: Document, field: str) -> BlockParams:
+def _params(params: type[BlockParams], values: Document, field: str) -> BlockParams:
     try:
-        return block.Params.model_validate(values, strict=False)
+        found = params.model_validate(values, strict=False)
     except ValidationError as error:
-        raise from_validation(error, _nested_fields(block.Params)).under(field) from None
+        raise from_validation(error, _nested_fields(params)).under(field) from None
+    if twice := twice_given(found):
+        raise InputError(
+            f"gives the step of the converter, and {twice} does too", f"{field}.bits", "leave one of them out"
+        )
+    return found
 
 
 def _nested_fields(model: type[BaseModel]) -> dict[str, list[str]]:

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from core.block import BlockParams, Context, FloatArray, IntArray
+from core.block import BlockParams, Context, FloatArray, IntArray, Oscillator
+from core.board import steps
 from core.board.board import Board
 from core.board.commands import SetValues
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
 from core.board.spec import Spec
+from core.compile.machine import WIDTH
 from core.record import RecordLayout
 
 FACTS = [fact.name for fact in fields(Context)]
@@ -59,6 +61,13 @@ class Pattern:
         # a block that rests is packed when it starts to run
         packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
+        self._addresses: dict[int, int] = {}
+
+    def address(self, row: int) -> int:
+        """Return the address of the step of a row, for all boards."""
+        if row not in self._addresses:
+            self._addresses[row] = steps.address(self.board.wiring, row, WIDTH)
+        return self._addresses[row]
 
     def _choices(self) -> IntArray:
         """Return the places of the numbers that boards abreast must share."""
@@ -80,31 +89,28 @@ def _choices_of(layout: RecordLayout) -> list[int]:
     return found
 
 
-DERIVED = {name: fact.fget for name, fact in vars(Context).items() if isinstance(fact, property) and fact.fget}
-"""Facts that follow from others, which are the facts read."""
+class _Fact:
+    """A fact of a bench, which is put among the attributes of the object that it is first read from."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, noting: Any, _: type) -> Any:
+        value = vars(noting)[self._name] = getattr(vars(noting)[""], self._name)
+        return value
 
 
-class _Noting(Context):
-    """The facts of a bench, with a note of each fact read; a unit that a document carries accepts only a `Context`."""
-
-    read: set[str]
-
-    def __init__(self, context: Context) -> None:
-        vars(self).update(_context=context, read=set[str]())
-
-    def __getattribute__(self, name: str) -> Any:
-        if name.startswith("_") or name == "read":
-            return object.__getattribute__(self, name)
-        if name in DERIVED:
-            return DERIVED[name](self)
-        self.read.add(name)
-        return getattr(self._context, name)
+_Noting = type("_Noting", (Context,), {fact: _Fact(fact) for fact in FACTS})
+"""The facts of a bench, whose attributes are the facts read; a unit of a document accepts only a `Context`."""
 
 
 def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray, set[str]]:
     """Return the parameters and the first state of a block, and which facts of the bench they are made of."""
-    noting: Any = _Noting(spec.context(instance.every, instance.axis))
-    return instance.packed(noting), instance.block.initial(instance.params, noting), noting.read
+    noting: Any = object.__new__(_Noting)
+    read = vars(noting)
+    read[""] = spec.context(instance.every, instance.axis)
+    made = instance.packed(noting), instance.block.initial(instance.params, noting)
+    return *made, read.keys() - {""}
 
 
 def unlike(one: Context, other: Context) -> set[str]:
@@ -119,10 +125,12 @@ def is_alike(one: Any, other: Any) -> bool:
         return True
     if type(one) is float and one != 0.0:
         return bool(one == other)
-    if isinstance(one, BlockParams):
+    if isinstance(one, BlockParams | Oscillator):
         return type(one) is type(other) and is_alike(vars(one), vars(other))
     if isinstance(one, dict):
         return one.keys() == other.keys() and all(is_alike(value, other[name]) for name, value in one.items())
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(is_alike, one, other))
     return bool(one == other) and repr(one) == repr(other)
 
 

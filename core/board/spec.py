@@ -14,7 +14,6 @@ from pydantic import Field
 from core.block import Block, BlockParams, Context, Oscillator
 from core.board.document import Document, sections
 from core.board.library import Library, library_of
-from core.converter import reach
 from core.device.device import Device
 from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
@@ -24,7 +23,7 @@ from core.measured_record import MeasuredRecord, record_of
 from core.plant.record import RecordPlant
 from core.table import Table
 
-ALONE = ("environment", "plant", "reference", "model", "drive", "guard")
+ALONE = ("environment", "plant", "reference", "model", "drive", "board", "guard")
 GROUPS = ("sensors", "generators", "controllers", "identifiers", "diagnosers", "readouts")
 """Sections of a bench, and tables of sections by name."""
 ALL_ALONE, ALL_GROUPS = attrgetter(*ALONE), attrgetter(*GROUPS)
@@ -76,6 +75,7 @@ class Spec:
     reference: Section
     model: Section
     drive: Section
+    board: Section
     guard: Section
     measuring: str
     sensors: dict[str, Section]
@@ -144,6 +144,23 @@ class Spec:
         """Figures of the device in its environment, before any fault."""
         return self.device.metrics(*self.surroundings, self.context().temperature_k)
 
+    @property
+    def tones(self) -> list[tuple[float, float]]:
+        """Frequency and amplitude of the tones of the reference."""
+        waveform: Any = self.reference.block
+        found: list[tuple[float, float]] = waveform.tones(self.reference.params, self.context())
+        return found
+
+    @cached_property
+    def cautions(self) -> list[str]:
+        """Warnings about the loss by the blocks' assumptions of the voltage, at its strongest tone."""
+        _, hz = max((abs(volts), hz) for hz, volts in (*self.tones, (0.0, 0.0)))
+        found = []
+        for name, section in {**self.identifiers, **self.diagnosers}.items():
+            text = section.block.caution(section.params, self.context(self.turns(section)), hz)
+            found += [f"{name} {text}"] if text else []
+        return found
+
     def parts(self) -> Iterator[tuple[str, Section]]:
         """Yield every section with its name."""
         for name in ALONE:
@@ -206,8 +223,8 @@ class Spec:
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
-            limit_v=reach(drive.limit_v, drive.quantum_v) if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=reach(drive.limit_un, drive.quantum_un) if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
+            limit_un=AxisDrive.reach(drive) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
         )
@@ -219,7 +236,8 @@ class Spec:
         spec = object.__new__(Spec)
         frame = self.frame.model_copy(update={"seed": seed})
         document = {**self.document, "seed": seed}
-        vars(spec).update(vars(self), frame=frame, document=document, _contexts={}, _sown=self, quoted=self.quoted)
+        known = {"quoted": self.quoted, "cautions": self.cautions}
+        vars(spec).update(vars(self), frame=frame, document=document, _contexts={}, _sown=self, **known)
         return spec
 
     def with_faults(self, faults: dict[str, BlockParams]) -> Spec:

@@ -9,7 +9,7 @@ from core.board.document import CHOSEN
 from core.board.spec import Section, Spec
 from core.cards import is_live
 
-SINGLE = ("environment", "plant", "reference", "model", "drive", "guard")
+SINGLE = ("environment", "plant", "reference", "model", "drive", "board", "guard")
 EXCHANGED = ("reference",)
 """Of these, and of generators, the kind may change while a bench runs."""
 

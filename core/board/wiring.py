@@ -14,6 +14,7 @@ from core.block import BoolArray, FloatArray, IntArray
 from core.board import program
 from core.board.instances import Instance, feeds_forward, instances
 from core.board.spec import Spec
+from core.board.stages import behind
 from core.faults.fault import Fault
 from core.loop.effects import Effects
 from core.plain import plain
@@ -281,11 +282,15 @@ def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -
     if source.endswith("?"):
         signal = source.removesuffix("?")
         return signal if signal in index else NOTHING
+    if source.startswith("^"):
+        return f"{instance.prefix.rpartition('.')[0]}.{source[1:]}"
     if not source.startswith("@"):
-        return source or f"{instance.prefix}.{port.name}"
+        found = behind(spec, instance.block.family, source)
+        return found if found in index else source or f"{instance.prefix}.{port.name}"
     slot, dot, name = source[1:].partition(".")
     if dot:
-        signal = f"{spec.active if slot == 'active' else spec.driving.get(slot, '')}.{name}"
+        of = {"active": spec.active, "true": "plant"}.get(slot) or spec.driving.get(slot, "")
+        signal = f"{of}.{name}"
         return signal if signal in index else NOTHING
     word, _, rest = slot.partition("_")
     if word == "engaged":

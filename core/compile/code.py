@@ -21,7 +21,7 @@ from core.compile.translate import Translation
 from core.kernel_cache import Content, bytecode, compiled_here, get, key, put
 
 MOST_PASSES = 30
-OTHERS = {"core.compile.folding", "core.compile.segment"}
+OTHERS = {"core.compile.folding", "core.compile.keeping", "core.compile.segment"}
 """Modules beside the translator, which some processes load and some do not."""
 POINTER, PLACES = DOUBLE.as_pointer(), I64.as_pointer()
 
@@ -97,6 +97,18 @@ def renew() -> None:
         piece = step(block, width)
         if piece.name in borrowed:
             _addresses[block, width] = loaded(piece.kept())
+
+
+def helper(write: Callable[..., ir.Module], *arguments: Any) -> int:
+    """Return the address of a C function beside the steps, by the function that writes its module."""
+    own = inspect.getsource(sys.modules[write.__module__])
+    piece = Piece(
+        f"{write.__name__}-{write.__module__}",
+        lambda _: digest(own, compiler(), arguments),
+        lambda: str(write(*arguments)),
+        loops=False,
+    )
+    return loaded(piece.kept())
 
 
 def step(block: Block, width: int = 1) -> Piece:

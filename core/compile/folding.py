@@ -9,8 +9,8 @@ from typing import Any
 from llvmlite import ir
 
 from core.compile.arrays import counted
-from core.compile.code import PLACES, POINTER, begun
-from core.compile.machine import WIDTH, compiled, loaded
+from core.compile.code import PLACES, POINTER, begun, helper
+from core.compile.machine import WIDTH
 from core.compile.numbers import I64
 
 BITS = ir.VectorType(I64, WIDTH)
@@ -22,7 +22,14 @@ def _whole(value: int) -> Any:
 
 @cache
 def folding(factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int) -> int:
-    """Return where the C function is that folds a tick.
+    """Return where the C function is that folds a tick."""
+    return helper(folds_of_tick, factors, shifts, none, reserved)
+
+
+def folds_of_tick(
+    factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int
+) -> ir.Module:
+    """Write the function that folds a tick.
 
     It takes four pointers, as steps do: to all signals, the folds, the places of the outputs that count, and how many
     these are and all outputs. The first output comes after the reserved signals; ``core.board.fold`` has the factors,
@@ -51,4 +58,4 @@ def folding(factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, 
             value = builder.mul(join(builder.load(own, align=8), sample), alike(factor))
             builder.store(builder.xor(value, builder.lshr(value, alike(shift))), own, align=8)
     builder.ret_void()
-    return loaded(compiled(str(module)))
+    return module

@@ -27,6 +27,12 @@ def devices() -> tuple[Device, ...]:
     return tuple(sorted(parsed, key=lambda device: device.id))
 
 
+@cache
+def _documents() -> dict[str, dict[str, Any]]:
+    """Return the document of every device of the catalogue, by id."""
+    return {entry.id: entry.model_dump(exclude_none=True) for entry in devices()}
+
+
 def device(overrides: dict[str, Any]) -> Device:
     """Return the device named by ``id`` with the other values written over it.
 
@@ -36,11 +42,10 @@ def device(overrides: dict[str, Any]) -> Device:
         For an unknown id or a value that is not allowed; the field is below ``device``.
     """
     name = overrides.get("id", "ch3")
-    base = {entry.id: entry for entry in devices()}
+    base = _documents()
     if not isinstance(name, str) or name not in base:
         raise unknown("device", name, base, "device.id")
-    document = base[name].model_dump(exclude_none=True)
-    merged = merge(document, overrides)
+    merged = merge(base[name], overrides)
     try:
         return Device.model_validate(merged)
     except ValidationError as error:

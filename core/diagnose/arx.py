@@ -15,7 +15,6 @@ from core import voltage
 from core.block import Context, Oscillator, Stage, parameter
 from core.diagnose.bank import Bank
 from core.diagnose.hypothesis import BankParams, assumed_noise
-from core.diagnose.kalman import shuttle_memory
 from core.diagnose.lanes import LANE
 from core.diagnose.weights import floored
 from core.elementary import log
@@ -23,7 +22,7 @@ from core.estimation import diagonal, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import output, tap
 from core.record import Choice, Record, Vector, vector
-from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, weighed_voltages
+from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, shuttle_memory, weighed_voltages
 
 REGRESSOR = Stage("Regressor", "applied measured", "h")
 SIZE = 4
@@ -209,7 +208,7 @@ class ArxBank(Bank):
         p.count = len(params.hypotheses)
         p.every = context.every
         p.filter_a1, p.filter_a2 = (a1, a2) if filtered else (0.0, 0.0)
-        p.memory = shuttle_memory(context)
+        p.memory = shuttle_memory(context.device, context.dt_ms)
         p.least_power = params.least_drive_v * params.least_drive_v
         p.interval = interval_of(context)
         for i, theta in enumerate(coefficients_of(params, context)):

@@ -5,18 +5,59 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Context, Equation, Stage, parameter
+from core.block import BlockParams, Context, Equation, Stage, parameter
 from core.diagnose import window
 from core.diagnose.chance import chi_square
 from core.diagnose.filters import between_updates, driven, filters_step
 from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.elementary import cos, sin
-from core.kernel import whole
+from core.kernel import kernel, whole
 from core.ports import output, tap
-from core.record import Vector
+from core.record import Record, Vector
 
 NORMAL, DETECTED, ISOLATED, AMBIGUOUS, UNKNOWN = 0, 1, 2, 3, 4
 VERDICTS = ("normal", "detected", "isolated", "ambiguous", "unknown fault")
+
+
+class ConclusionParams(BlockParams):
+    """How long a verdict must hold."""
+
+    isolated_after: int = parameter(50, "samples with the same one left", ge=1, le=1_000_000)
+    unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
+
+
+class PackedConclusion(Record):
+    """Samples before a verdict is given."""
+
+    isolated_after: float
+    unknown_after: float
+
+
+class Conclusion(Record):
+    """The only candidate or -1, its samples so far, and the samples without any candidate."""
+
+    alone: float
+    alone_run: float
+    none_run: float
+
+
+@kernel
+def concluded(p: PackedConclusion, s: Conclusion, candidates: int, last: int, healthy: bool) -> int:
+    """Return the verdict for a number of consistent hypotheses, the last of them, and whether the first is one."""
+    alone = last if candidates == 1 else -1
+    s.alone_run = s.alone_run + 1.0 if alone == s.alone else 1.0
+    s.alone = alone
+    s.none_run = s.none_run + 1.0 if candidates == 0 else 0.0
+    verdict = DETECTED
+    if healthy:
+        verdict = NORMAL
+    elif candidates > 1:
+        verdict = AMBIGUOUS
+    elif alone >= 0 and s.alone_run >= p.isolated_after:
+        verdict = ISOLATED
+    elif s.none_run >= p.unknown_after:
+        verdict = UNKNOWN
+    return verdict
 
 
 class Consistency(KalmanBank):
@@ -59,7 +100,7 @@ class Consistency(KalmanBank):
         Stage("Verdict", "consistent", "candidates verdict probability"),
     )
 
-    class Params(KalmanParams):
+    class Params(KalmanParams, ConclusionParams):
         """Assumptions of the test."""
 
         process_noise_v: float = parameter(
@@ -68,23 +109,15 @@ class Consistency(KalmanBank):
         window: int = parameter(50, "samples of the window", equation="5.1.6.1", ge=2, le=4096, live=False)
         significance: float = parameter(1e-5, "chance that a test calls a true hypothesis false", gt=0, le=0.5)
         tone_hz: float | None = parameter(None, "tone; the reference's unless given", "Hz", gt=0, le=1e6)
-        isolated_after: int = parameter(50, "samples with the same one left", ge=1, le=1_000_000)
-        unknown_after: int = parameter(200, "samples with none left", ge=1, le=1_000_000)
 
-    class Packed(window.Packed):
-        """Parameters of filters and window; limits of the tests, samples before a verdict is given."""
+    class Packed(window.Packed, PackedConclusion):
+        """Parameters of filters and window; limits of the tests."""
 
         power_limit: float
         tone_limit: float
-        isolated_after: float
-        unknown_after: float
 
-    class State(window.State):
-        """Filters and window; the only candidate or -1, its samples so far, and the samples without any candidate."""
-
-        alone: float
-        alone_run: float
-        none_run: float
+    class State(window.State, Conclusion):
+        """Filters and window, and the verdict so far."""
 
     class Ports(KalmanBank.Ports):
         """Ports of every bank; the verdict, and the tests behind it."""
@@ -147,19 +180,7 @@ class Consistency(KalmanBank):
                 candidates += 1
                 last = i
                 healthy = healthy or i == 0
-        alone = last if candidates == 1 else -1
-        s.alone_run = s.alone_run + 1.0 if alone == s.alone else 1.0
-        s.alone = alone
-        s.none_run = s.none_run + 1.0 if candidates == 0 else 0.0
-        verdict = DETECTED
-        if healthy:
-            verdict = NORMAL
-        elif candidates > 1:
-            verdict = AMBIGUOUS
-        elif alone >= 0 and s.alone_run >= p.isolated_after:
-            verdict = ISOLATED
-        elif s.none_run >= p.unknown_after:
-            verdict = UNKNOWN
+        verdict = concluded(p, s, candidates, last, healthy)
         if driven(p, s):  # without drive every hypothesis is consistent with the measurement
             x.verdict = verdict
             x.candidates = candidates

@@ -29,6 +29,16 @@ class BankPorts(ObservedPorts):
     gain_velocity: Vector = tap("1/ms", "Kalman gain of the velocity", each="hypotheses")
 
 
+class StatePorts(BankPorts):
+    """Ports of a bank whose models each estimate the state: also the corrected states and their covariances."""
+
+    state_displacement: Vector = tap("um", "displacement under the hypothesis", each="hypotheses")
+    state_velocity: Vector = tap("um/ms", "velocity under the hypothesis", each="hypotheses")
+    variance_displacement: Vector = tap("um^2", "variance of this displacement", each="hypotheses", hidden=True)
+    covariance: Vector = tap("um^2/ms", "covariance of displacement and velocity", each="hypotheses", hidden=True)
+    variance_velocity: Vector = tap("um^2/ms^2", "variance of this velocity", each="hypotheses", hidden=True)
+
+
 @kernel
 def push(p: PackedFilters, s: Filters, x: AppliedPorts, low: int, high: int) -> float:
     """Write the effect of the voltage of the tick that ends now on the models from ``low`` to ``high``, and return it.
@@ -183,8 +193,8 @@ def correct_state(
 
 
 @kernel
-def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
-    """Predict and correct all filters; show their residuals, the squares over psi, and the gains.
+def filters_step(p: PackedFilters, s: Filters, x: StatePorts, n: int) -> bool:
+    """Predict and correct all filters; show their residuals, the squares over psi, the gains and the states.
 
     Returns whether a residual covariance has changed, so that its logarithm must be renewed.
     """
@@ -211,7 +221,25 @@ def filters_step(p: PackedFilters, s: Filters, x: BankPorts, n: int) -> bool:
         squares[i] = s.nis[i]
         gains1[i] = s.gain1[i]
         gains2[i] = s.gain2[i]
+    show_states(p, s, x, n)
     return changed != 0
+
+
+@kernel
+def show_states(p: PackedFilters, s: Filters, x: StatePorts, n: int) -> None:
+    """Show the corrected states and their covariances; steady gains have the covariances of the limit."""
+    displacements = x.state_displacement
+    velocities = x.state_velocity
+    first = x.variance_displacement
+    mixed = x.covariance
+    second = x.variance_velocity
+    steady = p.steady != 0.0
+    for i in range(n):
+        displacements[i] = s.x1[i]
+        velocities[i] = s.x2[i]
+        first[i] = p.steady11[i] if steady else s.p11[i]
+        mixed[i] = p.steady12[i] if steady else s.p12[i]
+        second[i] = p.steady22[i] if steady else s.p22[i]
 
 
 @kernel

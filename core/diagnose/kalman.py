@@ -9,13 +9,13 @@ import numpy as np
 
 from core.block import BlockParams, Context, Equation, FloatArray, Stage, parameter
 from core.diagnose.bank import Bank
-from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, BankPorts
+from core.diagnose.filters import LEAST, TAKE_MIDDLE, TAKE_PARABOLA, TAKE_START, StatePorts
 from core.diagnose.hypothesis import BankParams, Hypothesis, assumed_noise
 from core.diagnose.lanes import Filters, PackedFilters
-from core.elementary import cos, exp, sin
+from core.elementary import cos, sin
 from core.format import format_short
 from core.matrix import product, riccati
-from core.voltage import MOST_LOST, Tick, over_tick
+from core.voltage import MOST_LOST, Tick, over_tick, shuttle_memory
 
 P = TypeVar("P", bound=PackedFilters)
 S = TypeVar("S", bound=Filters)
@@ -86,8 +86,8 @@ class KalmanBank(Bank):
     class State(Filters):
         """The filters."""
 
-    class Ports(BankPorts):
-        """Ports of every bank."""
+    class Ports(StatePorts):
+        """Ports of every bank of filters."""
 
     @classmethod
     def takes_steady_gains(cls, params: Any) -> bool:
@@ -124,25 +124,29 @@ class KalmanBank(Bank):
         ticks = Tick(np.array(moving).T)  # each number of all models
         p.tick11[:n], p.tick12[:n], p.tick21[:n], p.tick22[:n] = ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22
         p.push1[:n], p.push2[:n] = ticks.push1, ticks.push2
-        p.middle1[:n], p.middle2[:n], p.end1[:n], p.end2[:n] = ticks.middle1, ticks.middle2, ticks.end1, ticks.end2
+        if context.analogue:
+            p.middle1[:n], p.middle2[:n], p.end1[:n], p.end2[:n] = ticks.middle1, ticks.middle2, ticks.end1, ticks.end2
         push = np.array([ticks.push1, ticks.push2]).T
         each = np.array([ticks.phi11, ticks.phi12, ticks.phi21, ticks.phi22]).T.reshape(n, 2, 2)
         caused = push[:, :, None] * push[:, None, :] * q
-        spans = [over_ticks(*own, context.every) for own in zip(each, caused, strict=True)]
-        phi, noise = (np.array(kind).T for kind in zip(*spans, strict=True))
+        if context.every > 1:
+            spans = [over_ticks(*own, context.every) for own in zip(each, caused, strict=True)]
+            each, caused = map(np.array, zip(*spans, strict=True))
+        phi, noise = each.T, caused.T
         p.phi11[:n], p.phi12[:n], p.phi21[:n], p.phi22[:n] = phi[0, 0], phi[1, 0], phi[0, 1], phi[1, 1]
         p.noise11[:n], p.noise12[:n], p.noise22[:n] = noise[0, 0], noise[1, 0], noise[1, 1]
         if steady:
-            gains = [steady_gain(*own, r, printed) for own in spans]
-            p.gain1[:n], p.gain2[:n], p.psi[:n] = np.transpose(gains)
+            gains = [steady_gain(*own, r, printed) for own in zip(each, caused, strict=True)]
+            p.gain1[:n], p.gain2[:n], p.psi[:n], p.steady22[:n] = np.transpose(gains)
             p.inverse_psi[:n] = 1.0 / p.psi[:n]
+            p.steady11[:n], p.steady12[:n] = p.gain1[:n] * r, p.gain2[:n] * r
         p.count = len(hypotheses)
         p.sensor = r
         p.steady = steady
         p.printed = printed
         p.every = context.every
         p.taken = _taken(params, context)
-        p.memory = shuttle_memory(context)
+        p.memory = shuttle_memory(context.device, context.dt_ms)
         p.least_drive = params.least_drive_v * params.least_drive_v
         return p
 
@@ -174,14 +178,6 @@ def _taken(params: Any, context: Context) -> int:
     return TAKE_PARABOLA if context.analogue and params.voltage == "parabola" else TAKE_MIDDLE
 
 
-def shuttle_memory(context: Context) -> float:
-    """Return the share that a mean keeps from sample to sample if its memory is the shuttle's, 2m/beta or a cycle."""
-    device = context.device
-    cycle = 2.0 * math.pi / device.natural_frequency
-    lasting = max(2.0 * device.mass / device.damping, cycle) if device.damping > 0.0 else cycle
-    return exp(-context.dt_ms / lasting)
-
-
 def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatArray, FloatArray]:
     r"""Return the transition over some ticks, and the covariance that their noise has caused at the end of them.
 
@@ -206,8 +202,8 @@ def over_ticks(tick: FloatArray, noise: FloatArray, ticks: int) -> tuple[FloatAr
     return phi, total
 
 
-def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> tuple[float, float, float]:
-    """Return the filter gain and residual covariance in the limit.
+def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> tuple[float, float, float, float]:
+    """Return the filter gain, the residual covariance and the variance of the corrected velocity, in the limit.
 
     Parameters
     ----------
@@ -221,4 +217,5 @@ def steady_gain(phi: FloatArray, noise: FloatArray, r: float, printed: bool) -> 
     # a little noise on both states keeps the Riccati equation solvable when none is assumed
     prior = riccati(phi, np.array([[1.0, 0.0]]), noise + np.eye(2) * 1e-18, np.array([[r]]))
     psi = prior[0, 0] + r
-    return prior[0, 0] / psi, prior[1, 0] / psi, max(prior[0, 0], LEAST * r) if printed else psi
+    k1, k2 = prior[0, 0] / psi, prior[1, 0] / psi
+    return k1, k2, max(prior[0, 0], LEAST * r) if printed else psi, prior[1, 1] - k2 * prior[0, 1]

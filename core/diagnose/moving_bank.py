@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from core.block import Context, Equation, Stage, parameter
-from core.diagnose.filters import between_updates, driven, filter_step, hand_over
+from core.diagnose.filters import BankPorts, between_updates, driven, filter_step, hand_over
 from core.diagnose.hypothesis import Hypothesis
 from core.diagnose.kalman import FILTERS, FilterParams, KalmanBank
 from core.diagnose.lanes import LANE
@@ -114,7 +114,7 @@ class MovingBank(KalmanBank):
         pushed1: Vector = tail()
         pushed2: Vector = tail()
 
-    class Ports(KalmanBank.Ports):
+    class Ports(BankPorts):
         """Measurement and voltage; the three filters, and the estimate."""
 
         probability: Vector = output("1", "probability of the filter", labels=THREE)

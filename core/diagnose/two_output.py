@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from core.block import Context, Equation, Stage, parameter
-from core.diagnose.filters import between_updates, driven, filters_step, take_logarithms
+from core.diagnose.filters import between_updates, driven, filters_step, show_states, take_logarithms
 from core.diagnose.kalman import FILTERS, KalmanBank, KalmanParams
 from core.diagnose.lanes import LANE, Filters
 from core.diagnose.weights import floored, take_floored_softmax
@@ -152,4 +152,5 @@ class TwoOutput(KalmanBank):
             x.nis[i] = nis
             s.likelihood[i] = likelihood
             best = max(best, likelihood)
+        show_states(p, s, x, n)
         take_floored_softmax(s.log, s.likelihood, x.probability, n, best, p.probability_floor, p.log_floor)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, parameter
-from core.converter import Converter, convert, reach
+from core.converter import BITS, Converter, convert, reach, step_of
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
@@ -24,6 +24,7 @@ class AxisDrive(Block):
 
         limit_un: float = parameter(1000.0, "limit to either side", "uN", gt=0, le=1e6)
         quantum_un: float = parameter(0.0, "step of the converter, 0 for none", "uN", ge=0, le=1e4)
+        bits: int = BITS
         kind: Literal["held", "analogue"] = parameter(
             "held",
             "held by a converter, or analogue, for controllers that know their force between samples",
@@ -47,10 +48,20 @@ class AxisDrive(Block):
         saturated: float = tap("1", "1 while more force is asked for than the drive has")
 
     @classmethod
+    def quantum(cls, params: Any) -> float:
+        """Return the step of the converter, 0 for none."""
+        return step_of(params.quantum_un, params.bits, params.limit_un)
+
+    @classmethod
+    def reach(cls, params: Any) -> float:
+        """Return the largest force that is put out."""
+        return reach(params.limit_un, cls.quantum(params))
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the limit and the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = reach(params.limit_un, params.quantum_un), params.quantum_un
+        p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.analogue = params.kind == "analogue"
         return p
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from core.block import Block, BlockParams, Context, parameter
-from core.converter import Converter, convert, reach
+from core.converter import BITS, Converter, convert, reach, step_of
 from core.elementary import floor
 from core.noise import key, uniform
 from core.ports import BlockPorts, output, reads, tap
@@ -22,6 +22,7 @@ class Drive(Block):
 
         limit_v: float = parameter(30.0, "limit to either side", "V", gt=0, le=1000)
         quantum_v: float = parameter(0.0, "step of the converter, 0 for none", "V", ge=0, le=100)
+        bits: int = BITS
         dither_v: float = parameter(
             0.0,
             "random signs added to the controller's voltage, so that a constant drive carries information",
@@ -53,10 +54,20 @@ class Drive(Block):
         saturated: float = tap("1", "1 while more voltage is asked for than the drive has")
 
     @classmethod
+    def quantum(cls, params: Any) -> float:
+        """Return the step of the converter, 0 for none."""
+        return step_of(params.quantum_v, params.bits, params.limit_v)
+
+    @classmethod
+    def reach(cls, params: Any) -> float:
+        """Return the largest voltage that is put out."""
+        return reach(params.limit_v, cls.quantum(params))
+
+    @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.limit, p.quantum = reach(params.limit_v, params.quantum_v), params.quantum_v
+        p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.dither_per_ms = params.dither_rate_hz / 1e3
         p.dither_key = key(context.seed, "drive.dither")
         return p

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import Context
+from core.block import Block
 from core.loop.drive import Drive
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
 
-class RecordDrive(Drive):
+class RecordDrive(Block):
     """Applies the recorded voltage; laws in shadow know the same limits as with a device."""
 
     title = "Recorded drive"
     apart = True
 
-    class Packed(Record):
-        """Nothing: the record has been through its own limits."""
+    Params = Drive.Params
 
     class Ports(BlockPorts):
         """Recorded voltage in, the same voltage out."""
@@ -27,11 +24,6 @@ class RecordDrive(Drive):
         middle: float = output("V", "applied voltage half a sample later", hidden=True)
         end: float = output("V", "applied voltage one sample later", hidden=True)
         saturated: float = tap("1", "0: nothing asks a record for voltage")
-
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> Record:
-        """Return no numbers."""
-        return cls.Packed.blank()
 
     @staticmethod
     def step(p: Record, s: Record, x: Ports) -> None:

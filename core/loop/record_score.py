@@ -7,8 +7,8 @@ from typing import Any
 
 from core.block import Block, Context
 from core.diagnose.hypothesis import BankParams, names_of
-from core.loop.score import Score, ScoreTiming, count, nothing_counted, take_turns
-from core.ports import BlockPorts, output, reads, tap
+from core.loop.score import Score, ScoreTiming, VerdictPorts, count, nothing_counted, take_turns
+from core.ports import reads
 from core.record import Vector, tail
 
 
@@ -36,19 +36,10 @@ class RecordScore(Block):
 
         hypothesis: Vector = tail()
 
-    class Ports(BlockPorts):
-        """Probabilities of the bank and the label in, the verdict out."""
+    class Ports(VerdictPorts):
+        """In addition the label."""
 
-        probability: Vector = reads("", "1", "probabilities of the bank")
-        nis: Vector = reads("", "1", "normalised residuals of the bank")
         label: float = reads("plant.label", "1", "index of the label, -1 for none")
-        winner: float = output("1", "index of the most probable hypothesis, -1 when probabilities are no numbers")
-        truth: float = output("1", "index of the hypothesis that is true by the labels, -1 for none")
-        correct_fraction: float = tap("1", "share of labelled samples with the right winner")
-        false_switches: float = tap("1", "exits from the truth after it was found")
-        delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
-        least_nis: float = tap("1", "average normalised residual squared of what fits best; 1 where it is true")
-        unexplained: float = tap("1", "1 while no hypothesis fits: even the least is too large for chance")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:

@@ -48,6 +48,20 @@ class ScoreTiming(Record):
     limit: float
 
 
+class VerdictPorts(BlockPorts):
+    """Probabilities of a bank in, the verdict out."""
+
+    probability: Vector = reads("", "1", "probabilities of the bank")
+    nis: Vector = reads("", "1", "normalised residuals of the bank")
+    winner: float = output("1", "index of the most probable hypothesis, -1 when probabilities are no numbers")
+    truth: float = output("1", "index of the hypothesis that is true, -1 for none")
+    correct_fraction: float = tap("1", "share of samples with the right winner")
+    false_switches: float = tap("1", "exits from the truth after it was found")
+    delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
+    least_nis: float = tap("1", "average normalised residual squared of what fits best; 1 where it is true")
+    unexplained: float = tap("1", "1 while no hypothesis fits: even the least is too large for chance")
+
+
 class Score(Block):
     r"""Scores a bank: share of right samples, delay of each step, exits from the truth.
 
@@ -104,11 +118,9 @@ class Score(Block):
         average: Vector = vector(LANE)
         confusion: Vector = tail()
 
-    class Ports(BlockPorts):
-        """Probabilities of the bank, the true factors, and the verdict."""
+    class Ports(VerdictPorts):
+        """In addition the true factors."""
 
-        probability: Vector = reads("", "1", "probabilities of the bank")
-        nis: Vector = reads("", "1", "normalised residuals of the bank")
         mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal")
         stiffness_scale: float = reads("effects.stiffness_scale", "1", "true stiffness over nominal")
         damping_scale: float = reads("effects.damping_scale", "1", "true damping over nominal")
@@ -116,13 +128,6 @@ class Score(Block):
         other: float = reads("effects.other", "1", "not zero while no hypothesis can be true")
         set_stiffness: float = reads("environment.stiffness_scale", "1", "stiffness without any fault over nominal")
         set_damping: float = reads("environment.damping_set", "1", "damping without any fault over nominal")
-        winner: float = output("1", "index of the most probable hypothesis, -1 when probabilities are no numbers")
-        truth: float = output("1", "index of the hypothesis that is true, -1 for none")
-        correct_fraction: float = tap("1", "share of samples with the right winner")
-        false_switches: float = tap("1", "exits from the truth after it was found")
-        delay: float = tap("samples", "samples it took to find the present truth, -1 while it is not found")
-        least_nis: float = tap("1", "average normalised residual squared of what fits best; 1 where it is true")
-        unexplained: float = tap("1", "1 while no hypothesis fits: even the least is too large for chance")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
@@ -179,7 +184,7 @@ def holds(h: Factors, x: Score.Ports) -> bool:
 
 
 @kernel
-def count(p: ScoreTiming, s: Score.State, x: Score.Ports, n: int, truth: int) -> None:
+def count(p: ScoreTiming, s: Score.State, x: VerdictPorts, n: int, truth: int) -> None:
     """Compare the winner with the truth, and count."""
     winner = winner_of(x.probability, n)
     if not math.isfinite(x.probability[winner]):

@@ -26,6 +26,7 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "core.record": ("Choice", "Record", "Records", "Vector", "several", "vector"),
     "core.ports": ("BlockPorts", "output", "reads", "tap"),
     "core.kernel": ("flush_tiny", "inlined", "kernel"),
+    "core.converter": ("step_of",),
     "core.elementary": ("atan2", "cos", "exp", "expm1", "floor", "log", "sin", "sin_of_turns", "tanh"),
     "core.noise": ("key", "normal", "uniform"),
     "core.voltage": ("AppliedPorts", "MeasuredPorts", "ObservedPorts", "Tick"),

@@ -37,7 +37,7 @@ PUBLIC: dict[str, tuple[str, ...]] = {
     "readout": ("@active.rate",),
     "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
     "identify": (*MEASURED, *DRIVEN, *REFERENCE),
-    "sense": ("plant.displacement", "plant.velocity", *MEASURED),
+    "sense": ("plant.displacement", "plant.velocity", "@true.displacement", *MEASURED),
     "faults": (*(f"effects.{port.name}" for port in Effects.outputs), *DRIVEN),
 }
 """Sources of the inputs of each family; what ends in ``?`` is not on every bench, and must be read so."""

@@ -13,7 +13,7 @@ from core.kernel import kernel
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
-from core.sense.sensor import Sensor, SensorParams
+from core.sense.sensor import TRUE_PORT, Sensor, SensorParams
 from core.units import FF_PER_F, UM_PER_M
 
 NODES = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
@@ -91,7 +91,8 @@ class Capacitive(Sensor):
     class Ports(BlockPorts):
         """Reads the motion in the plane; writes capacitances and displacement."""
 
-        true: float = reads("plant.displacement", "um", "true displacement")
+        sensed: float = reads("plant.displacement", "um", "displacement of the combs")
+        true: float = TRUE_PORT
         lateral: float = reads("plant.shift?", "um", "true lateral displacement, where the plant has one")
         rotation: float = reads("plant.rotation?", "mrad", "true rotation, where the plant has one")
         displacement: float = output("um", "measured displacement")
@@ -139,7 +140,7 @@ class Capacitive(Sensor):
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
         """Read both combs; displacement from the difference."""
-        displacement = x.true
+        displacement = x.sensed
         y = x.lateral
         theta = 1e-3 * x.rotation
         positive = p.gradient * squeezed(p, 1.0, p.overlap + displacement, y, theta)
@@ -151,4 +152,4 @@ class Capacitive(Sensor):
         x.sum = positive + negative
         x.positive = positive
         x.negative = negative
-        x.error = z - displacement
+        x.error = z - x.true

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, Equation, parameter
+from core.converter import step_of
 from core.elementary import floor
 from core.noise import key, normal
 from core.ports import BlockPorts, output, reads
@@ -23,6 +24,7 @@ class Ideal(Block):
 
         noise_um: float = parameter(0.01, "standard deviation of the white noise", "um", ge=0, le=100)
         quantum_um: float = parameter(0.0, "step of the converter, 0 for none", "um", ge=0, le=100)
+        bits: int = parameter(0, "bits of the converter in place of its step: range over 2 to the bits", ge=0, le=48)
         range_um: float = parameter(40.0, "range of the converter to either side", "um", gt=0)
 
     class Packed(Record):
@@ -42,7 +44,8 @@ class Ideal(Block):
     @classmethod
     def noise_um(cls, params: Any, context: Context) -> float:
         r"""Return the noise of a sample, :math:`\sqrt{\sigma^2+q^2/12}`: rounding spreads evenly over a step."""
-        return math.sqrt(params.noise_um * params.noise_um + params.quantum_um * params.quantum_um / 12.0)
+        step = step_of(params.quantum_um, params.bits, params.range_um)
+        return math.sqrt(params.noise_um * params.noise_um + step * step / 12.0)
 
     @classmethod
     def ambiguity_um(cls, params: Any, context: Context) -> float:
@@ -54,8 +57,10 @@ class Ideal(Block):
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
         p.key = key(context.seed, "sensor")
-        if params.quantum_um > 0.0:  # the last step within the range
-            last = params.quantum_um * floor(params.range_um / params.quantum_um + 1e-9)
+        step = step_of(params.quantum_um, params.bits, params.range_um)
+        p.quantum_um = step
+        if step > 0.0:  # the last step within the range
+            last = step * floor(params.range_um / step + 1e-9)
             p.range_um = min(params.range_um, last)
         return p
 

@@ -80,7 +80,7 @@ class PeakValley(Sensor):
         light: float = reads("through_wafer.intensity", "1", "light through the wafer")
         height: float = reads("doppler.height", "um", "integrated Doppler signal")
         true: float = TRUE_PORT
-        moving: float = reads("plant.velocity", "um/ms", "true velocity, for the verdict only")
+        moving: float = reads("@true.velocity", "um/ms", "true velocity, for the verdict only")
         displacement: float = RECOVERED_PORT
         error: float = ERROR_PORT
         extremes: float = tap("1", "fringe extreme last passed, counted from an opening under the beam")

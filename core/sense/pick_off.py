@@ -47,8 +47,9 @@ class PickOff(Sensor):
     class Ports(BlockPorts):
         """True and measured motion along the axis."""
 
-        true: float = reads("plant.{axis}", "um", "true displacement")
-        true_velocity: float = reads("plant.{axis}_velocity", "um/ms", "true velocity")
+        sensed: float = reads("plant.{axis}", "um", "displacement along the axis")
+        true: float = reads("@true.{axis}", "um", "true displacement, for the error only")
+        sensed_velocity: float = reads("plant.{axis}_velocity", "um/ms", "velocity along the axis")
         displacement: float = output("um", "measured displacement")
         velocity: float = output("um/ms", "measured velocity")
         error: float = tap("um", "measured minus true displacement")
@@ -78,12 +79,12 @@ class PickOff(Sensor):
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:
         """Read displacement and velocity."""
-        z = x.true
+        z = x.sensed
         if p.noise_um > 0.0:
             z += p.noise_um * normal(p.key, x.tick)
         if p.quantum_um > 0.0:
             z = p.quantum_um * floor(z / p.quantum_um + 0.5)
-        velocity = x.true_velocity
+        velocity = x.sensed_velocity
         if p.noise_um_ms > 0.0:
             velocity += p.noise_um_ms * normal(p.velocity_key, x.tick)
         x.displacement = z

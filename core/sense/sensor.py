@@ -12,7 +12,7 @@ from core.ports import output, reads, tap
 
 LAST_PORT = reads("sensor.displacement", "um", "last measurement: where to take over")
 
-TRUE_PORT = reads("plant.displacement", "um", "true displacement, for the error only")
+TRUE_PORT = reads("@true.displacement", "um", "true displacement, for the error only")
 RECOVERED_PORT = output("um", "recovered displacement")
 ERROR_PORT = tap("um", "recovered minus true displacement")
 SLIPS_PORT = tap("1", "whole pitches it is off by")

@@ -16,13 +16,15 @@ from core.board.board import Board
 from core.board.changes import check
 from core.board.commands import MakeSafe
 from core.board.lane import Lane
-from core.board.observer import cautions, warnings
+from core.board.observer import warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import PendingCommand, PendingQueue
+from core.board.stages import stages
 from core.compile.machine import WIDTH
 from core.errors import InputError
-from scenarios.campaign.outcome import RunOutcome, outcome, summed
-from scenarios.run import DEFAULT_SAMPLES, figures
+from scenarios.campaign.outcome import RunOutcome, fault_of, odds_of, outcome, summed
+from scenarios.measure.metrics import measure
+from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 from scenarios.signals import watched
 
@@ -71,7 +73,8 @@ def shape(scenario: Scenario) -> Any:
         return None
     spec = scenario.spec
     blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
-    return blocks, tuple(spec.driving.items()), spec.measuring, spec.dt_ms, scenario.samples
+    rest = spec.measuring, spec.dt_ms, scenario.samples, scenario.asks_estimates
+    return blocks, tuple(stages(spec)), tuple(spec.driving.items()), *rest
 
 
 def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcome], tell: Callable[[], None]) -> None:
@@ -80,30 +83,38 @@ def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcom
     samples = scenario.samples or DEFAULT_SAMPLES
     try:
         board = Board(scenario.spec)
+        board.estimates = scenario.asks_estimates
         board.pending = waiting(scenario, board)
         pattern, told = Pattern(board), running_warnings(board)
     except (InputError, Uneven):
         return
-    names, queues = [*watched(board), *told], {id(scenario.events): board.pending.copy()}
-    if samples * len(names) * WIDTH > MOST_NUMBERS:
+    odds = [(name, *odds_of(board, name, scores.names)) for name, scores in board.scores().items()]
+    sums = {fault_of(name): faults for name, healthy, _, faults in odds if healthy is not None and faults}
+    summed_up = {*chain.from_iterable(sums.values())}
+    names = [name for name in [*watched(board), *told] if name not in summed_up]
+    queues = {id(scenario.events): board.pending.copy()}
+    if samples * (len(names) + len(sums)) * WIDTH > MOST_NUMBERS:
         return
     for start in range(0, len(numbers), WIDTH):
         chosen = numbers[start : start + WIDTH]
         if len(chosen) >= FEWEST:
-            found |= _together(pattern, names, told, samples, queues, runs, chosen)
+            found |= _together(pattern, (names, samples, sums), told, queues, runs, chosen)
             tell()
 
 
 def _together(
     pattern: Pattern,
-    names: list[str],
+    kept: tuple[list[str], int, dict[str, list[str]]],
     told: dict[str, str],
-    samples: int,
     waits: dict[int, PendingQueue],
     runs: Sequence[Run],
     chosen: list[int],
 ) -> dict[int, RunOutcome]:
-    """Carry out some runs; ``waits`` has the commands of the lists of events seen so far, by their identity."""
+    """Carry out some runs.
+
+    ``kept`` has the signals to keep, the ticks, and the sums of signals to keep; ``waits`` has the commands of the
+    lists of events seen so far, by their identity.
+    """
     began = time.perf_counter()
     try:
         specs = [runs[number][0].spec.with_seed(runs[number][1]) for number in chosen]
@@ -111,16 +122,17 @@ def _together(
             if id(scenario.events) not in waits:
                 waits[id(scenario.events)] = waiting(scenario, pattern.board)
         queues = [waits[id(runs[number][0].events)].copy() for number in chosen]
-        boards = Abreast(pattern, specs, queues, names, samples)
-        came = boards.run(samples)
+        boards = Abreast(pattern, specs, queues, *kept)
+        came = boards.run(kept[1])
     except (InputError, Uneven):
         return {}
     found = {}
     for lane, number in enumerate(chosen):
         if came[lane]:
             scenario, board, trace = runs[number][0], boards.boards[lane], boards.trace(lane)
+            metrics = measure(board, trace, scenario.head.metrics)
             said = warned(scenario, board, told, trace)
-            found[number] = summed(scenario, board, figures(board, trace, scenario), board.digest(), trace, said)
+            found[number] = summed(scenario, board, metrics, board.digest(), trace, said)
     elapsed = (time.perf_counter() - began) / len(chosen)
     for outcome_ in found.values():
         outcome_.elapsed_s = elapsed
@@ -136,7 +148,7 @@ def running_warnings(board: Board) -> dict[str, str]:
 
 def warned(scenario: Scenario, board: Lane, told: dict[str, str], trace: dict[str, FloatArray]) -> list[str]:
     """Return the warnings that a run alone would have in its log, each once, in the order in which they came."""
-    found = [(tick, text) for tick, spec in board.specs for text in cautions(spec)]
+    found = [(tick, text) for tick, spec in board.specs for text in spec.cautions]
     for name, text in told.items():
         if (risen := trace[name] > 0.0).any():
             found.append((int(np.argmax(risen)), text))

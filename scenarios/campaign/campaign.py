@@ -19,6 +19,7 @@ from core.errors import InputError
 from scenarios.campaign.batch import outcomes
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.outcome import RunOutcome
+from scenarios.campaign.points import Point
 from scenarios.campaign.progress import Cancelled, tell
 from scenarios.campaign.sweep import Sweep
 from scenarios.campaign.todo import Remaining, Run
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 BATCH_S = 1.0
 """Computing time of a batch, long enough that the cost of sending it does not matter."""
-MAX_BATCH = 500
+MAX_BATCH = 512
 AHEAD = 2
 """Batches under way for each worker."""
 LOOK_S = 0.2
@@ -82,21 +83,22 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     _check_version(version)
     began = time.perf_counter()
     read: dict[int, Scenario | InputError] = {}
-    like: Scenario | None = None
+    last: tuple[Point, Scenario] | None = None
     for _, point, _ in runs:
         if id(point) not in read:
             try:
-                read[id(point)] = like = Scenario.load(point.document, like=like)
+                read[id(point)] = scenario = point.read(last)
+                last = point, scenario
             except InputError as error:
                 read[id(point)] = error
     good: list[tuple[str, tuple[Scenario, int]]] = []
     found: list[tuple[str, RunOutcome]] = []
     for key, point, seed in runs:
-        scenario = read[id(point)]
-        if isinstance(scenario, InputError):
-            found.append((key, RunOutcome(seed=seed, error=str(scenario))))
+        one = read[id(point)]
+        if isinstance(one, InputError):
+            found.append((key, RunOutcome(seed=seed, error=str(one))))
         else:
-            good.append((key, (scenario, seed)))
+            good.append((key, (one, seed)))
     made = outcomes([run for _, run in good], tell)
     found += zip([key for key, _ in good], made, strict=True)
     return [(key, one.model_dump_json()) for key, one in found], (time.perf_counter() - began) / len(runs)
@@ -263,7 +265,8 @@ class Campaign:
     def _batch(self, remaining: Remaining, width: int) -> list[Run]:
         """Take runs worth `BATCH_S` from the queue, towards its end ever fewer, so that all workers end together."""
         share = max(-(-remaining.waiting // (AHEAD * width)), WIDTH)
-        return remaining.take(min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share))
+        count = min(max(1, round(BATCH_S / self._cost)), MAX_BATCH, share)
+        return remaining.take(count - count % WIDTH or count)
 
     def _submit_traced(self, executor: Processes | Cluster, first: Run) -> Future[tuple[Found, float, Any]]:
         """Hand over the run whose trace is kept, with the outcomes of the others."""

@@ -13,6 +13,7 @@ from pydantic import BaseModel, computed_field
 from core.block import FloatArray, IntArray
 from core.board.board import Board
 from core.board.commands import Trip
+from core.compile.instructions import bits_of
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
@@ -111,24 +112,30 @@ def summed(
 
 def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatArray]) -> Diagnosis:
     counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
-    params: Any = board.diagnosers[name].params
-    healthy = next(
-        (position for position, item in enumerate(params.hypotheses) if item.is_nominal),
-        None,
-    )
-    columns = [f"{name}.probability.{hypothesis}" for hypothesis in scores.names]
-    if healthy is None or columns[0] not in trace or board.tick == 0:
+    healthy, none, faults = odds_of(board, name, scores.names)
+    if healthy is None or none not in trace or board.tick == 0:
         return counted
     counts = np.zeros((2, len(ODDS) + 1), dtype=np.int64)
-    for *probabilities, truth in blocks(*(trace[column] for column in columns), trace[f"{name}.truth"]):
-        fault = np.zeros(len(truth))
-        for position, probability in enumerate(probabilities):
-            if position != healthy:
-                fault += probability
-        others = np.ascontiguousarray(probabilities[healthy]), np.ascontiguousarray(truth)
-        counts += evidence(fault, *others, healthy, ODDS)
+    summed = [fault_of(name)] if fault_of(name) in trace else faults
+    for truth, no_fault, *probabilities in blocks(*(trace[column] for column in (f"{name}.truth", none, *summed))):
+        fault = sum(probabilities[1:], probabilities[0]) if probabilities else np.zeros(len(truth))
+        others = np.ascontiguousarray(no_fault), np.ascontiguousarray(truth)
+        counts += evidence(np.ascontiguousarray(fault), *others, healthy, ODDS)
     counted.healthy, counted.faulty = counts.tolist()
     return counted
+
+
+def fault_of(name: str) -> str:
+    """Return under which name a trace has the probability that a diagnoser gives to all faults together."""
+    return f"{name}.fault"
+
+
+def odds_of(board: Board, name: str, hypotheses: list[str]) -> tuple[int | None, str, list[str]]:
+    """Return which hypothesis of a diagnoser is a healthy device, its probability, and the others."""
+    params: Any = board.diagnosers[name].params
+    healthy = next((position for position, item in enumerate(params.hypotheses) if item.is_nominal), None)
+    columns = [f"{name}.probability.{hypothesis}" for hypothesis in hypotheses]
+    return healthy, columns[healthy or 0], [*columns[: healthy or 0], *columns[(healthy or 0) + 1 :]]
 
 
 def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray) -> IntArray:
@@ -150,22 +157,22 @@ def evidence(fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: in
     ndarray of int64, shape (2, thresholds + 1)
     """
     counts = np.zeros((2, len(odds) + 1), dtype=np.int64)
-    _count(np.maximum(fault, LEAST) / np.maximum(none, LEAST), truth, healthy, odds, counts)
+    _count(fault, none, truth, healthy, np.concatenate(([math.nan], odds, [math.nan])), counts)
     return counts
 
 
 @kernel
-def _count(ratio: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray, counts: IntArray) -> None:
-    count = len(odds)
+def _count(
+    fault: FloatArray, none: FloatArray, truth: FloatArray, healthy: int, odds: FloatArray, counts: IntArray
+) -> None:
+    last = len(odds) - 2
     # the bits of a number are nearly proportional to its logarithm: the bin from them is the right one or next to it
-    bits, ends = ratio.view(np.int64), odds.view(np.int64)
-    share = (count - 1) / (ends[-1] - ends[0])
-    for i in range(len(ratio)):
-        if not ratio[i] > 0.0:
-            ratio[i] = 1.0
-        found = min(max(int((bits[i] - ends[0]) * share) + 1, 0), count)
-        while found > 0 and ratio[i] < odds[found - 1]:
-            found -= 1
-        while found < count and ratio[i] >= odds[found]:
-            found += 1
+    first, share = bits_of(odds[1]), (last - 1) / (bits_of(odds[last]) - bits_of(odds[1]))
+    for i in range(len(fault)):
+        over = LEAST if fault[i] < LEAST else fault[i]
+        under = LEAST if none[i] < LEAST else none[i]
+        ratio = over / under
+        ratio = ratio if ratio > 0.0 else 1.0
+        found = min(max(int((bits_of(ratio) - first) * share) + 1, 0), last)
+        found += (1 if ratio >= odds[found + 1] else 0) - (1 if ratio < odds[found] else 0)
         counts[0 if truth[i] == healthy else 1, found] += 1

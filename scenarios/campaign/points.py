@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Protocol, overload
 
@@ -13,6 +14,7 @@ from core.block import FloatArray, IntArray
 from core.errors import InputError
 from scenarios.edit import written
 from scenarios.key import content_hash
+from scenarios.schema import HEAD, Scenario
 
 Values = dict[str, Any]
 Labels = dict[str, str | float]
@@ -80,6 +82,33 @@ class Point:
     def document(self) -> dict[str, Any]:
         """The scenario with its values; built anew at each call, because thousands of them take much memory."""
         return written(self.base, self.values) if self.values else self.base
+
+    def read(self, last: tuple[Point, Scenario] | None = None) -> Scenario:
+        """Return its scenario; ``last`` is another point with its own, which may be alike.
+
+        Points of one base that write numbers to the same fields of the bench differ by these numbers alone: then
+        nothing else is read again.
+
+        Raises
+        ------
+        InputError
+            When its values give no valid scenario.
+        """
+        point, like = last or (None, None)
+        if point is not None and like is not None and point.base is self.base and _are_numbers(point, self):
+            with suppress(InputError):  # which does not name the field as it is written
+                return like.with_numbers(self.values, lambda: self.document)
+        return Scenario.load(self.document, like=like)
+
+
+def _are_numbers(*points: Point) -> bool:
+    """Say whether points write numbers to the same fields of the bench, and nothing else."""
+    one, other = (point.values for point in points)
+    return (
+        one.keys() == other.keys()
+        and all(type(value) is float for values in (one, other) for value in values.values())
+        and not any(path.partition(".")[0] in HEAD for path in one)
+    )
 
 
 class Points(Sequence[Point]):

@@ -13,6 +13,7 @@ from core.board.ensemble import OWN
 from core.board.library import MOST_UNITS
 from core.board.packages import NAME, PackageEntry
 from core.board.spec import BoardSettings
+from core.board.stages import AxesBoardParams, BoardParams
 from core.device.catalogue import devices
 from core.device.device import Device
 from core.loop.axis_drive import AxisDrive
@@ -36,6 +37,7 @@ ABOUT = {
     "sensor": "the sensor in use",
     "sensors": "parameters of all sensors, by kind",
     "drive": "the stage between the controller and the device",
+    "board": "the stages around the converters: filter and sampling before them, delay and amplifier behind",
     "guard": "the limits at which the bench takes its outputs to their safe values",
     "identifiers": "identifiers, each under a name of your own",
     "diagnosers": "diagnosers, each under a name of your own",
@@ -94,6 +96,11 @@ def _either(*blocks: type[Block]) -> Callable[[Definitions], Schema]:
     return made
 
 
+def _board(definitions: Definitions) -> Schema:
+    """Return the schema of the stages of a board; the plant decides between the two."""
+    return {"anyOf": [definitions.add(one.__name__, definitions.model(one)) for one in (BoardParams, AxesBoardParams)]}
+
+
 def _slots() -> Schema:
     blocks = registry.blocks("control").values()
     others = dict.fromkeys(slot for plant in registry.blocks("plant").values() for slot in [*plant.slots][:-1])
@@ -148,6 +155,7 @@ _SECTIONS: dict[str, Callable[[Definitions], Schema]] = {
     "sensor": lambda known: usual(known, "sense", _of_plants(lambda plant: plant.usual_sensor)),
     "sensors": lambda known: parked(known, "sense"),
     "drive": _either(Drive, AxisDrive),
+    "board": _board,
     "guard": _either(Guard, AxisGuard),
     **{key: partial(_chosen, name) for key, name in CHOSEN.items()},
     "units": lambda known: named(known.add("OwnUnit", UNIT), MOST_UNITS),

@@ -14,7 +14,7 @@ from core.board.board import Board
 from core.board.spec import Spec
 from core.kernel import kernel
 from core.loop.score import Scores
-from scenarios.measure.blocks import BLOCK, blocks, largest, last_where, loaded, mean, stretches, width
+from scenarios.measure.blocks import BLOCK, blocks, largest, last_where, loaded, mean, stretches
 from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
 from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.rate import rate_metrics
@@ -46,6 +46,16 @@ def fundamental(signal: FloatArray, frequency_hz: float, dt_ms: float, first_tic
     return complex(*np.linalg.lstsq(squares, products)[0][:2])
 
 
+def fundamentals(signals: list[FloatArray], frequency_hz: float, dt_ms: float, first_tick: int) -> list[complex]:
+    """Return the phasors of one tone in four signals of one length, as `fundamental` does."""
+    if len(signals[0]) > BLOCK:
+        return [fundamental(signal, frequency_hz, dt_ms, first_tick) for signal in signals]
+    found = np.empty((4, 2))
+    first, second, third, last = map(loaded, signals)
+    _weigh(_projection(frequency_hz, dt_ms, first_tick, len(first)), first, second, third, last, found)
+    return [complex(*parts) for parts in found.tolist()]
+
+
 @lru_cache(maxsize=32)
 def _projection(frequency_hz: float, dt_ms: float, first_tick: int, samples: int) -> FloatArray:
     """Return the two rows that make sine and cosine of a signal, which may have an offset."""
@@ -66,6 +76,26 @@ def weighed(weights: FloatArray, signal: FloatArray) -> tuple[float, float]:
         first += weights[0, i] * signal[i]
         second += weights[1, i] * signal[i]
     return first, second
+
+
+@kernel
+def _weigh(
+    weights: FloatArray, first: FloatArray, second: FloatArray, third: FloatArray, last: FloatArray, found: FloatArray
+) -> None:
+    """Write the sums of four signals under two rows of weights, each in the order of its samples."""
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(weights.shape[1]):
+        sine, cosine = weights[0, i], weights[1, i]
+        a += sine * first[i]
+        b += cosine * first[i]
+        c += sine * second[i]
+        d += cosine * second[i]
+        e += sine * third[i]
+        f += cosine * third[i]
+        g += sine * last[i]
+        h += cosine * last[i]
+    found[0, 0], found[0, 1], found[1, 0], found[1, 1] = a, b, c, d
+    found[2, 0], found[2, 1], found[3, 0], found[3, 1] = e, f, g, h
 
 
 def device_metrics(spec: Spec) -> dict[str, float]:
@@ -99,24 +129,21 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     }
     step = last_step(r)
     before = float(model[step - 1]) if step else 0.0
-    rise = mean(model[tail]) - before
-    if abs(rise) > 1e-9 and width(r[tail]) == 0.0:
+    rise = mean(model[tail]) - before if step <= tail.start else 0.0
+    if abs(rise) > 1e-9:
         peak = largest(lambda values: (values - before) * math.copysign(1.0, rise), x[step:])
         figures["control.overshoot_pct"] = 100.0 * (peak / abs(rise) - 1.0)
     if (peak_of := first_peak(x, model)) is not None:
         figures["control.first_peak_pct"] = peak_of
     frequency = board.spec.tone_hz
     if frequency:
-        first = len(u) - len(u[tail])
-        asked = abs(fundamental(r[tail], frequency, dt, first))
-        if asked > 0.0:
-            figures["control.effort_ratio"] = abs(fundamental(u[tail], frequency, dt, first)) / asked
-        phasor = fundamental(x[tail], frequency, dt, first)
-        wanted = abs(fundamental(model[tail], frequency, dt, first))
-        if wanted > 0.0:
-            figures["control.displacement_ratio"] = abs(phasor) / wanted
-        figures["control.amplitude_um"] = abs(phasor)
-        figures["control.phase_deg"] = math.degrees(math.atan2(phasor.imag, phasor.real))
+        asked, given, moved, wanted = fundamentals([one[tail] for one in (r, u, x, model)], frequency, dt, tail.start)
+        if abs(asked) > 0.0:
+            figures["control.effort_ratio"] = abs(given) / abs(asked)
+        if abs(wanted) > 0.0:
+            figures["control.displacement_ratio"] = abs(moved) / abs(wanted)
+        figures["control.amplitude_um"] = abs(moved)
+        figures["control.phase_deg"] = math.degrees(math.atan2(moved.imag, moved.real))
     return {name: value for name, value in figures.items() if math.isfinite(value)}
 
 
@@ -139,7 +166,7 @@ def diagnosis_metrics(name: str, scores: Scores, lengths: list[int]) -> dict[str
         f"{prefix}.missed_steps": float(sum(delay is None for delay in scores.delays)),
     }
     if len(counted) > 1:
-        figures[f"{prefix}.mean_delay_samples"] = float(np.mean(counted[1:]))
+        figures[f"{prefix}.mean_delay_samples"] = sum(counted[1:]) / (len(counted) - 1)
     for step, delay in enumerate(counted, 1):
         figures[f"{prefix}.delay_samples.{step}"] = float(delay)
     if scores.nis is not None and math.isfinite(scores.nis):

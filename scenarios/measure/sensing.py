@@ -3,27 +3,41 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections import Counter
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from core.block import BoolArray, FloatArray
+from core.block import FloatArray
 from core.board.board import Board
 from core.board.commands import SetValues
+from core.kernel import kernel
 from scenarios.measure.blocks import blocks
 from scenarios.measure.stretch import Stretch
 
 
-def lost_samples(error: FloatArray, ambiguity_um: float, whole: int) -> BoolArray:
-    """Return the samples whose error, less whole periods, exceeds half of the sensor's ambiguity.
+def good_squares(measured: FloatArray, true: FloatArray, ambiguity_um: float, whole: int) -> FloatArray:
+    """Return the squares of the errors, less whole periods, of the samples that are not lost.
 
-    An absolute sensor loses only samples that are not numbers.
+    A sample is lost if its error exceeds half of the sensor's ambiguity. An absolute sensor loses only samples that are
+    not numbers.
     """
-    if ambiguity_um == 0.0:
-        return ~np.isfinite(error)
-    return ~(np.abs(error - whole * ambiguity_um) <= 0.5 * ambiguity_um)
+    squares = np.empty(len(true))
+    most = 0.5 * ambiguity_um or sys.float_info.max
+    return squares[: _take_squares(measured, true, whole * ambiguity_um, most, squares)]
+
+
+@kernel
+def _take_squares(measured: FloatArray, true: FloatArray, offset: float, most: float, squares: FloatArray) -> int:
+    count = 0
+    for i in range(len(true)):
+        error = measured[i] - true[i] - offset
+        if abs(error) <= most:
+            squares[count] = error * error
+            count += 1
+    return count
 
 
 def whole_periods(errors: Iterable[FloatArray], ambiguity_um: float) -> int:
@@ -55,15 +69,13 @@ def sensing_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     columns = trace["sensor.displacement"][start:], trace["plant.displacement"][start:]
     ambiguity = _ambiguity_um(board)
     whole = whole_periods((measured - true for measured, true in blocks(*columns)), ambiguity)
-    lost, squares = 0, 0.0
+    good, squares = 0, 0.0
     for measured, true in blocks(*columns):
-        error = measured - true
-        bad = lost_samples(error, ambiguity, whole)
-        good = error[~bad] - whole * ambiguity
-        lost, squares = lost + int(np.count_nonzero(bad)), squares + float(np.sum(good * good))
-    figures = {"sensing.direction_lost_fraction": lost / (samples - start)}
-    if lost < samples - start:
-        figures["sensing.rms_error_nm"] = 1e3 * math.sqrt(squares / (samples - start - lost))
+        found = good_squares(measured, true, ambiguity, whole)
+        good, squares = good + len(found), squares + float(np.sum(found))
+    figures = {"sensing.direction_lost_fraction": (samples - start - good) / (samples - start)}
+    if good:
+        figures["sensing.rms_error_nm"] = 1e3 * math.sqrt(squares / good)
     return figures
 
 

@@ -17,6 +17,7 @@ class Stretch(Table):
     since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from, ms")
     tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
     beside: str = Field("", max_length=200, description="diagnoser over whose delays the delays of others are taken")
+    estimation: bool = Field(False, description="whether weighted estimates run headless too, for their figures")
 
     def start(self, samples: int, dt_ms: float) -> int:
         """Return the first of a number of samples that counts; the last sample if the run ends before it."""

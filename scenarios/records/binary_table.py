@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import tempfile
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def mat_columns(content: bytes) -> Columns:
     from scipy.io import loadmat
 
     try:
-        found: dict[str, Any] = loadmat(io.BytesIO(content))
+        found: dict[str, Any] = loadmat(cast(Any, io.BytesIO(content)))
     except Exception as error:  # a damaged file may raise anything in a foreign reader
         raise _unreadable("MAT", error) from None
     vectors = {

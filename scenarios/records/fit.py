@@ -162,7 +162,9 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
     starts.sort(key=begun)
     bounds = ([-np.inf, -np.inf, 0.0], [np.inf, np.inf, float(MOST_DELAY)])
     found = [
-        least_squares(residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=np.array(1e-6), xtol=1e-12, ftol=1e-12)
+        least_squares(
+            residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=np.array(1e-6), xtol=1e-12, ftol=1e-12
+        )
         for start in starts[:REFINED]
     ]
     best = min(found, key=lambda one: float(one.cost))
@@ -178,7 +180,9 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
         jacobian[:, i] = (other - basis) @ weights / (moved[i] - numbers[i])
     jacobian[:, 3], jacobian[:, 4:] = gain * basis[:, 0], basis[:, [3, 1, 2]]
     scale = np.sqrt(np.sum(jacobian**2, axis=0)) + 1e-300
-    inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale), rcond=1e-15) / np.outer(scale, scale)
+    sizes, directions = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
+    # a direction that the record does not tell has a large variance, and not none
+    inverse = directions / np.maximum(sizes, 1e-14) @ directions.T / np.outer(scale, scale)
     variance = float(left @ left) / max(len(y) - 7, 1)
     return Fit(
         stiffness=math.exp(numbers[0]),

@@ -310,7 +310,7 @@ SHAPES: tuple[tuple[tuple[str, ...], Callable[[RunResult], Chart | None]], ...] 
     (("rate.phase_difference", "sync.error"), _in_step),
     (("gyro.tilt", "gyro.partner_tilt"), _locus),
     (("rate.angle",), _angle),
-    (("diagnosis.",), _lanes),
+    (("diagnosis.", "estimation."), _lanes),
     (("identify.",), _identified),
     (("sensing.",), _sensed),
     (("lateral.",), _aside),

@@ -17,12 +17,15 @@ from core.board.parse import parse
 from core.device.catalogue import device
 from core.errors import InputError
 from tests.core.fence import FencedBoard
-from tests.core.own.texts import FIT
+from tests.core.own.texts import FIT, ROOT
 from tests.lab import AXES_RICH, AXES_STORY, RICH, STORY, do, document, inner_digest, make, play, run_digest
 
 TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
+STAGES = {"sampler": {"antialias_khz": 30.0, "jitter_us": 0.3}, "amplifier": {"delay_samples": 1, "delay_fraction": 0.4,
+          "amplifier_khz": 40.0}}  # fmt: skip
+"""Values that put a stage of the board on a bench."""
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
 ENDS = ("not a finite", "touched", "shorted")
 PROFILES = (
@@ -49,6 +52,8 @@ def path_of(entry: type[Block]) -> str:
         return "readouts.allan"
     if entry.family == "control" and entry.axes:
         return f"controllers.{entry.name}"
+    if entry.family == "board" and entry.name.removeprefix("axis_") in STAGES:
+        return "board"
     if entry.family == "board" and entry.per_axis:
         return entry.name.removeprefix("axis_")
     if entry.family == "diagnose":
@@ -64,6 +69,8 @@ def path_of(entry: type[Block]) -> str:
 
 def chosen(entry: type[Block]) -> dict[str, Any]:
     """Return the values that put a block on the rich bench."""
+    if entry.family == "board" and (stage := STAGES.get(entry.name.removeprefix("axis_"))):
+        return {"board": {**stage, **({"slew_v_per_us": 0.1} if entry.name == "amplifier" else {})}}
     if entry.axes or entry.per_axis:
         return chosen_of_axes(entry)
     if entry.family == "sense" and all(port.name != "displacement" for port in entry.outputs):
@@ -84,6 +91,11 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         return {"diagnosers.kalman.kind": entry.name, "diagnosers.slow.kind": entry.name}
     if entry.name == "estimate_score":  # it belongs to a user's identifier
         return {"units.fit.source": FIT, "identifiers.fit.kind": "fit"}
+    if entry.name == "difference_states":
+        return {"diagnosers.kalman.kind": "self_tuning", "diagnosers.slow.kind": "anchored"}
+    if entry.name == "weighted_parameters":  # it belongs to a diagnoser whose models have no states
+        source = (ROOT / "docs/units/page.py").read_text("utf-8")
+        return {"units.page.source": source, "diagnosers.page.kind": "page"}
     return {}
 
 

@@ -17,7 +17,7 @@ from tests.physics.bank import FACTORS, NAMES, K, M, model, of_bank, signals
 def test_steady_gain_has_the_figures_of_the_riccati_equation():
     phi, gamma = model(FACTORS["healthy"])
     q, r = 0.3**2, 0.05**2
-    k1, k2, psi = steady_gain(phi, gamma @ gamma.T * q, r, False)
+    k1, k2, psi, left = steady_gain(phi, gamma @ gamma.T * q, r, False)
     assert k1 == pytest.approx(0.1434, rel=0.01)
     assert k2 == pytest.approx(0.5540, rel=0.01)
     assert psi / r == pytest.approx(1.167, rel=0.01)
@@ -32,6 +32,7 @@ def test_steady_gain_has_the_figures_of_the_riccati_equation():
         last, p = p, p - gain @ p[:1]
     np.testing.assert_allclose([k1, k2], gain[:, 0], rtol=1e-9)
     assert psi == pytest.approx(last[0, 0] + r, rel=1e-9)
+    np.testing.assert_allclose([[k1 * r, k2 * r], [k2 * r, left]], p, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -12,7 +12,7 @@ from core.device.catalogue import device
 from core.plant.planar import Planar
 from core.plant.suspension import elastic_force
 from core.sense.single_beam import SingleBeam
-from scenarios.measure.sensing import lost_samples, whole_periods
+from scenarios.measure.sensing import good_squares, whole_periods
 from tests.core.sense.bench import errors
 from tests.lab import do, play, rms
 from tests.physics.large_displacement import Frame
@@ -100,7 +100,8 @@ def lost(hertz: float, positions: int, stiffness: float = 0.0, **unit: float) ->
         "reference.amplitude_v": volts,
     }
     found = errors(values, range(1, positions + 1), stiffness=stiffness)
-    return float(np.mean([lost_samples(row, 4.0, whole_periods([row], 4.0)) for row in found]))
+    good = [good_squares(row, np.zeros(len(row)), 4.0, whole_periods([row], 4.0)) for row in found]
+    return 1.0 - float(np.mean([len(squares) / len(row) for squares, row in zip(good, found, strict=True)]))
 
 
 def test_one_beam_loses_slow_motion_and_says_what_helps():

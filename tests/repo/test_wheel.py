@@ -67,6 +67,12 @@ def test_a_build_that_fails_names_its_step_after_the_lines_of_the_program(checko
     assert "".join(capfd.readouterr()).splitlines()[-1].startswith("Compiling the blocks failed")
 
 
+def test_a_build_finds_the_packages_of_the_checkout_where_python_leaves_out_its_folder(checkout, monkeypatch) -> None:
+    (checkout / "only_in_the_checkout.py").write_text("print('found')\n")
+    monkeypatch.setenv("PYTHONSAFEPATH", "1")  # as pipx sets it
+    hook(checkout)._run("Looking", sys.executable, "-m", "only_in_the_checkout")
+
+
 def test_a_wheel_is_for_every_version_of_python_and_holds_page_and_machine_code(checkout, monkeypatch) -> None:
     monkeypatch.setattr(build.BuildHook, "_run", lambda *_: None)
     data: dict[str, Any] = {"force_include": {}}

@@ -15,11 +15,15 @@ from core.device.device import Device
 from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.geometry import Geometry
 from core.errors import InputError
+from core.loop.amplifier import Amplifier
+from core.loop.axis_amplifier import AxisAmplifier
 from core.loop.axis_drive import AxisDrive
 from core.loop.axis_guard import AxisGuard
+from core.loop.axis_sampler import AxisSampler
 from core.loop.drive import Drive
 from core.loop.guard import Guard
 from core.loop.model import Model
+from core.loop.sampler import Sampler
 from scenarios.edit import parse_assignment, with_values
 from scenarios.expectation import Expectation
 from scenarios.library import get, library
@@ -184,6 +188,8 @@ def own_tables() -> Iterator[tuple[str, Any, dict[str, Any]]]:
     """Yield the tables of blocks that are on every bench."""
     for block in (Drive, Guard, Model, AxisGuard):
         yield block.name.removeprefix("axis_"), block, {}
+    for block in (Sampler, Amplifier, AxisSampler, AxisAmplifier):
+        yield "board", block, {}
     yield "drive", AxisDrive, {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
 
 

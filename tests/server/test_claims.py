@@ -48,7 +48,9 @@ def step(live: Any, bench: str, ticks: int) -> None:
         ticks -= MOST_TICKS
 
 
-@pytest.mark.parametrize("name", [STEPS, "ch3-mrac-mass-x10", "ch3-stvsc-pull-in", "ch4-regulator"])
+@pytest.mark.parametrize(
+    "name", [STEPS, "ch5-weighted-output", "ch3-mrac-mass-x10", "ch3-stvsc-pull-in", "ch4-regulator"]
+)
 def test_at_the_end_every_figure_is_that_of_the_headless_run(live: Any, name: str) -> None:
     bench = live.bench(name, paused=True)["id"]
     whole = get(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from core import registry
@@ -59,6 +60,26 @@ def test_boards_with_seeds_of_their_own():
         assert abreast.boards[lane].digest() == board.digest()
         assert abreast.boards[lane].scores() == board.scores()
         assert abreast.trace(lane)["plant.displacement"][-1] == board.value("plant.displacement")
+
+
+def test_the_trace_of_each_board_is_its_trace_alone():
+    """Also between the slices that are sorted together, and of sums of signals."""
+    documents = [with_values(RICH, {"seed": seed}) for seed in range(1, 4)]
+    faults = ["kalman.probability.m+5", "kalman.winner", "plant.displacement"]
+    boards = [waiting(Board(document), EVENTS) for document in documents]
+    specs, queues = [board.spec for board in boards], [board.pending.copy() for board in boards]
+    abreast = Abreast(
+        Pattern(boards[0]), specs, queues, ["drive.voltage", "sensor.displacement"], TICKS, {"sum": faults}
+    )
+    abreast.run(TICKS)
+    for lane, document in enumerate(documents):
+        board = waiting(Board(document), EVENTS)
+        rows = np.vstack([board.advance(TICKS - board.tick).outputs.copy() for _ in range(2) if board.tick < TICKS])
+        own = {name: rows[:, board.signals.index(name)] for name in board.signals.names if name in faults}
+        trace = abreast.trace(lane)
+        assert trace["sum"].tobytes() == (own[faults[0]] + own[faults[1]] + own[faults[2]]).tobytes()
+        for name in ("drive.voltage", "sensor.displacement"):
+            assert trace[name].tobytes() == rows[:, board.signals.index(name)].tobytes()
 
 
 def test_boards_with_other_devices_commands_and_moments():

@@ -78,3 +78,46 @@ def test_twins_leave_out_what_looks_on_as_well() -> None:
     for one in (board, *board.twins.values()):
         left = {one.wiring.instances[row].key for row in one.wiring.left_out}
         assert "mrac" in left and one.spec.active not in left
+
+
+ESTIMATES = {"kalman.weighted", "self_tuning.states", "self_tuning.weighted"}
+ASKED = {"metrics": {"estimation": True}}
+EXPECTED = {"expect": [{"metric": "estimation.kalman.rms_error_um", "max": 1.0}]}
+
+
+def waits(condition: str) -> dict[str, Any]:
+    return {"events": [{"when": condition, "fault": "added_mass", "severity": 0.2}]}
+
+
+@pytest.mark.parametrize(
+    ("values", "runs"),
+    [
+        ({}, set()),
+        (ASKED, ESTIMATES),
+        (EXPECTED, ESTIMATES),
+        (waits("kalman.winner > 0.5"), set()),
+        (waits("self_tuning.weighted.stiffness > 1.01"), {"self_tuning.states", "self_tuning.weighted"}),
+        (waits("self_tuning.state_velocity.healthy > 1"), {"self_tuning.states"}),
+    ],
+    ids=["nothing", "figures", "an expectation", "a condition on a verdict", "on a weight", "on a state"],
+)
+def test_weighted_estimates_run_where_something_reads_them(values: dict[str, Any], runs: set[str]) -> None:
+    banks = {"diagnosers.self_tuning": {"kind": "self_tuning"}}
+    base = {"samples": TICKS, "sample_rate_khz": 20, "events": [], "expect": []}
+    scenario = with_values(get("ch5-seven-step"), {**base, **banks, **values})
+    board = build(scenario)
+    assert ESTIMATES - looking_on(board) == runs
+    alone = check(scenario)
+    figures = {name.split(".")[1] for name in alone.metrics if name.startswith("estimation.")}
+    assert figures == ({"kalman", "self_tuning"} if runs == ESTIMATES else set())
+    assert (
+        run(with_values(scenario, {"events": [], **ASKED})).digest == run(with_values(scenario, {"events": []})).digest
+    )
+
+
+def test_a_block_that_reads_a_weighted_estimate_lets_all_that_it_is_made_of_run() -> None:
+    scenario = with_values(get("ch5-seven-step"), {"diagnosers.self_tuning": {"kind": "self_tuning"}})
+    board = build(scenario)
+    wiring = board.wiring
+    wiring.ports(wiring.row("model"))[0] = wiring.index["self_tuning.weighted.stiffness"]
+    assert ESTIMATES & looking_on(board) == {"kalman.weighted"}

@@ -17,7 +17,7 @@ from tests.core.own.texts import ROOT
 from tests.physics.loop import sampled
 
 UNITS = ROOT / "docs" / "units"
-AGED, HEAVY = "ch3-case1-aged-mass", "ch3-stvsc-mass"
+AGED = "ch3-case1-aged-mass"
 
 
 def source(name: str) -> str:
@@ -57,9 +57,9 @@ def tail_error(result: RunResult) -> float:
 
 def test_the_page_lists_every_unit_and_the_command_line_accepts_it() -> None:
     text = (ROOT / "docs" / "own-units.md").read_text("utf-8")
-    programs = {"design_h_infinity", "train_neural_net"}
+    programs = {"train_neural_net"}
     names = {path.stem for path in UNITS.glob("*.py")} - programs
-    assert names == {"h_infinity", "page", "neural_net", "sliding_observer"}
+    assert names == {"page", "neural_net"}
     for name in names:
         assert f"[`{name}.py`](units/{name}.py)" in text
         assert unit(name, source(name)).family == ("diagnose" if name == "page" else "control")
@@ -109,40 +109,6 @@ def test_page_adds_up_the_ratios_and_alarms_in_time() -> None:
     assert result.summary()["metrics"]["diagnosis.mine.correct_fraction"] > 0.95
 
 
-# ---------------------------------------------------------------- H-infinity
-
-
-def test_h_infinity_has_the_constants_and_the_norm_of_its_design() -> None:
-    text = runpy.run_path(str(UNITS / "design_h_infinity.py"))
-    bound, numerator, denominator = text["design"]()
-    own = runpy.run_path(str(UNITS / "h_infinity.py"))
-    np.testing.assert_allclose(own["NUMERATOR"], numerator, rtol=1e-6)
-    np.testing.assert_allclose(own["DENOMINATOR"], denominator[1:], rtol=1e-6)
-    assert own["BOUND"] == pytest.approx(bound, rel=1e-5)
-    a, b, c = text["device"]()
-    s = 1j * np.logspace(-3, 3, 4001)
-    g = np.array([(c @ np.linalg.solve(at * np.eye(2) - a, b))[0, 0] for at in s])
-    k = np.polyval(numerator, s) / np.polyval(denominator, s) / text["WEIGHT"]
-    norm = np.sqrt((1.0 + abs(k) ** 2) * (1.0 + abs(g) ** 2)) / abs(1.0 + g * k)  # of rank one: the product of lengths
-    assert bound / text["ABOVE_LEAST"] <= norm.max() <= bound
-
-
-def test_h_infinity_leaves_the_error_that_its_loop_predicts() -> None:
-    """e = (Gm - G) r / (1 + G C), all sampled, C by its poles and a held error."""
-    scenario = bench("h_infinity", AGED, {"controller.kind": "h_infinity"})
-    result = run(scenario)
-    dt, z, nominal = scenario.spec.dt_ms, turn(scenario), scenario.spec.nominal
-    own = runpy.run_path(str(UNITS / "h_infinity.py"))
-    volts = nominal.stiffness / nominal.force
-    law = Oscillator(1.0, own["DENOMINATOR"][0], own["DENOMINATOR"][1], 1.0)
-    state, rate = phasors(sampled(law, dt * nominal.natural_frequency), z)
-    controller = volts * (own["NUMERATOR"][0] * rate + own["NUMERATOR"][1] * state)
-    model, device = phasors(sampled(nominal, dt), z)[0], phasors(sampled(true_device(result), dt), z)[0]
-    error = 10.0 * abs((model - device) / (1.0 + device * controller)) / np.sqrt(2.0)
-    assert tail_error(result) == pytest.approx(error, rel=2e-3)
-    assert error < 0.4 * 10.0 * abs(model - device) / np.sqrt(2.0), "open loop"
-
-
 # ---------------------------------------------------------------- a network
 
 
@@ -175,61 +141,3 @@ def test_neural_net_computes_its_forward_pass_and_leaves_the_error_of_the_same_l
     tail = np.array(errors)[-len(errors) // 4 :]
     assert tail_error(result) == pytest.approx(np.sqrt(np.mean(tail**2)), rel=1e-3)
     assert tail_error(result) < 0.4 * tail_error(run(bench("neural_net", AGED, {"controller.kind": "open_loop"})))
-
-
-# ---------------------------------------------------------------- a sliding observer
-
-
-SLIDING = {"controller.kind": "sliding_observer", "duration_ms": 40.0}
-
-
-def test_sliding_observer_is_wrong_by_the_sample_and_its_square() -> None:
-    """Levant 1998: homogeneity makes the error of the velocity O(h), the error of the displacement O(h^2)."""
-    worst = []
-    for rate_khz in (100, 200, 400):
-        values = {**SLIDING, "sample_rate_khz": rate_khz}
-        result = run(bench("sliding_observer", HEAVY, values), taps=True)
-        half = len(result.signal("plant.velocity")) // 2
-        worst.append(
-            [
-                np.abs(result.signal(f"sliding_observer.{own}") - result.signal(f"plant.{true}"))[half:].max()
-                for own, true in (("velocity", "velocity"), ("estimate", "displacement"))
-            ]
-        )
-    velocity, displacement = np.array(worst).T
-    np.testing.assert_allclose(velocity[:-1] / velocity[1:], 2.0, rtol=0.25)
-    np.testing.assert_allclose(displacement[:-1] / displacement[1:], 4.0, rtol=0.25)
-
-
-def test_sliding_observer_is_the_super_twisting_recursion() -> None:
-    scenario = bench("sliding_observer", HEAVY, {**SLIDING, "duration_ms": 2.0})
-    result = run(scenario, taps=True)
-    device, dt = scenario.spec.nominal, scenario.spec.dt_ms
-    measured, applied = result.signal("sensor.displacement"), result.signal("drive.voltage")
-    y, v, wanted = measured[0], 0.0, [(measured[0], 0.0)]
-    for now, later, volt in zip(measured[:-1], measured[1:], applied[:-1], strict=True):
-        force = device.force * volt - device.damping * v - device.stiffness * (now + later) / 2.0
-        rise = dt * (force / device.mass + 1.1 * 100.0 * np.sign(now - y))
-        y += dt * (v + rise / 2.0 + 1.5 * np.sqrt(100.0 * abs(now - y)) * np.sign(now - y))
-        v += rise
-        wanted.append((y, v))
-    got = np.column_stack([result.signal(f"sliding_observer.{name}") for name in ("estimate", "velocity")])
-    np.testing.assert_allclose(got, wanted, atol=1e-6)
-
-
-def test_sliding_observer_feeds_back_as_the_true_velocity_would() -> None:
-    """The loop with the true velocity leaves a phasor; the estimate moves it by no more than its error can."""
-    scenario = bench("sliding_observer", HEAVY, {**SLIDING, "sample_rate_khz": 400})
-    result = run(scenario, taps=True)
-    dt, z = scenario.spec.dt_ms, turn(scenario)
-    nominal, device = sampled(scenario.spec.nominal, dt), sampled(true_device(result), dt)
-    gains = np.array([-10.0, -1.0])
-    motion, wanted = phasors(device, z), phasors(nominal, z)
-    driven = (1.0 + gains @ wanted) / (1.0 + gains @ motion)
-    error = 10.0 * abs(wanted[0] - motion[0] * driven) / np.sqrt(2.0)
-    around = np.exp(1j * np.linspace(1e-3, np.pi, 2000))
-    reach = max(abs(one[0] / (1.0 + gains @ one)) for one in (phasors(device, at) for at in around))
-    off = result.signal("sliding_observer.velocity") - result.signal("plant.velocity")
-    moved = reach * abs(gains[1]) * float(np.sqrt(np.mean(off[len(off) // 2 :] ** 2)))
-    assert abs(tail_error(result) - error) <= moved < error
-    assert error < 0.4 * 10.0 * abs(wanted[0] - motion[0]) / np.sqrt(2.0), "open loop"

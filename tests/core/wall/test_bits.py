@@ -56,9 +56,7 @@ def of_the_gallery(name: str) -> str:
 
 
 GALLERY = {
-    "h_infinity": ("ch3-case1-aged-mass", {"controller.kind": "h_infinity"}),
     "neural_net": ("ch3-case1-aged-mass", {"controller.kind": "neural_net"}),
-    "sliding_observer": ("ch3-stvsc-mass", {"controller.kind": "sliding_observer", "sample_rate_khz": 400}),
     "page": ("ch5-seven-step", {"diagnosers.mine.kind": "page"}),
 }
 STIFF = {"samples": 2000, "events": [{"at_sample": 300, "fault": "added_mass", "severity": 0.05}]}

@@ -21,7 +21,7 @@ from tests.scenarios.digests import OLDER
 
 NAMES = tuple(tracks())
 DEMONSTRATION = seed_list("demonstration", NAMES)
-DEMONSTRATED = "24de67b07cbee7a0d30a0b58d80c0cf17339ba99d35791fab9bdd4edea630901"
+DEMONSTRATED = "e3b503f951483f36843a7d21b9bbf031eb8a9c0bc4420070498afa81244d51e1"
 """Hash of all outputs on the seeds of the demonstration."""
 
 

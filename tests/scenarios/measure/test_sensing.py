@@ -8,7 +8,7 @@ import scenarios  # noqa: F401  (first: it gives compiled kernels their cache)
 from core import registry
 from scenarios.edit import with_values
 from scenarios.library import get
-from scenarios.measure.sensing import lost_samples, whole_periods
+from scenarios.measure.sensing import good_squares, whole_periods
 from scenarios.run import run
 from scenarios.schema import Scenario
 from tests.library_pass import result
@@ -16,25 +16,25 @@ from tests.library_pass import result
 
 def aligned(error: np.ndarray, ambiguity_um: float) -> tuple[np.ndarray, int]:
     whole = whole_periods(np.array_split(error, 3), ambiguity_um)
-    return lost_samples(error, ambiguity_um, whole), whole
+    return good_squares(error, np.zeros(len(error)), ambiguity_um, whole), whole
 
 
 def test_the_fringe_the_count_began_on_is_left_open():
     error = np.full(1000, 8.0)
     error[:30] += 4.0
-    bad, whole = aligned(error, 4.0)
-    assert whole == 2 and bad.mean() == pytest.approx(0.03)
+    squares, whole = aligned(error, 4.0)
+    assert whole == 2 and squares.tolist() == [0.0] * 970
 
 
 def test_what_is_not_a_number_is_bad_and_nothing_is_lost_without_error():
-    assert aligned(np.zeros(10), 4.0)[0].sum() == 0
-    assert aligned(np.array([0.0, np.nan, np.inf, 0.1]), 4.0)[0].tolist() == [False, True, True, False]
-    assert aligned(np.full(3, np.nan), 4.0)[0].all()
+    assert aligned(np.zeros(10), 4.0)[0].tolist() == [0.0] * 10
+    assert aligned(np.array([0.0, np.nan, np.inf, 0.1]), 4.0)[0].tolist() == [0.0, 0.1 * 0.1]
+    assert aligned(np.full(3, np.nan), 4.0)[0].tolist() == []
 
 
 def test_a_sensor_without_a_grating_loses_nothing_however_far_off_it_is():
-    bad, whole = aligned(np.array([4.0, -9.0, np.nan]), 0.0)
-    assert bad.tolist() == [False, False, True] and whole == 0
+    squares, whole = aligned(np.array([4.0, -9.0, np.nan, -np.inf]), 0.0)
+    assert squares.tolist() == [16.0, 81.0] and whole == 0
 
 
 def test_of_equally_good_alignments_the_smallest_is_taken():

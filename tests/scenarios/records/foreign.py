@@ -1,4 +1,4 @@
-"""Devices that are simulated apart from ``core``: own equations, converter, offset, gain, delay, and effects beside them.
+"""Devices that are simulated apart from ``core``: own equations, converter, offset, gain and delay.
 
 Mass, damping, stiffness and force differ from nominal. Linear devices move by the matrix exponential, with the delay
 within a sample; others by small steps.

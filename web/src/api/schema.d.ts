@@ -10185,6 +10185,37 @@ export interface components {
             every?: number;
         };
         /**
+         * AxesBoardParams
+         * @description The stages of a board with axes around its converters; each is off at 0.
+         */
+        AxesBoardParams: {
+            /**
+             * @description samples from the measurement to the voltage
+             * @default 0
+             */
+            delay_samples?: number;
+            /**
+             * @description share of a sample in addition
+             * @default 0
+             */
+            delay_fraction?: number;
+            /**
+             * @description bandwidth of the amplifier, 0 for no limit, kHz
+             * @default 0
+             */
+            amplifier_khz?: number;
+            /**
+             * @description corner of the anti-alias filter, 0 for none, kHz
+             * @default 0
+             */
+            antialias_khz?: number;
+            /**
+             * @description standard deviation of the instant of sampling, µs
+             * @default 0
+             */
+            jitter_us?: number;
+        };
+        /**
          * AxesHypothesis
          * @description One model of a bank of two axes, as factors on the nominal device and a quadrature added to its own.
          */
@@ -10238,6 +10269,11 @@ export interface components {
              */
             quantum_un?: number;
             /**
+             * @description bits of the converter in place of its step: range over 2 to the bits
+             * @default 0
+             */
+            bits?: number;
+            /**
              * @description held by a converter, or analogue, for controllers that know their force between samples
              * @default held
              * @enum {string}
@@ -10283,6 +10319,42 @@ export interface components {
              * @default 0.2
              */
             reduction_um?: number;
+        };
+        /**
+         * BoardParams
+         * @description The stages of a board around its converters; each is off at 0.
+         */
+        BoardParams: {
+            /**
+             * @description samples from the measurement to the voltage
+             * @default 0
+             */
+            delay_samples?: number;
+            /**
+             * @description share of a sample in addition
+             * @default 0
+             */
+            delay_fraction?: number;
+            /**
+             * @description bandwidth of the amplifier, 0 for no limit, kHz
+             * @default 0
+             */
+            amplifier_khz?: number;
+            /**
+             * @description slew of the amplifier, 0 for no limit, V/µs
+             * @default 0
+             */
+            slew_v_per_us?: number;
+            /**
+             * @description corner of the anti-alias filter, 0 for none, kHz
+             * @default 0
+             */
+            antialias_khz?: number;
+            /**
+             * @description standard deviation of the instant of sampling, µs
+             * @default 0
+             */
+            jitter_us?: number;
         };
         /**
          * Campaign
@@ -10842,6 +10914,11 @@ export interface components {
              * @default 0
              */
             quantum_v?: number;
+            /**
+             * @description bits of the converter in place of its step: range over 2 to the bits
+             * @default 0
+             */
+            bits?: number;
             /**
              * @description random signs added to the controller's voltage, so that a constant drive carries information, V
              * @default 0
@@ -11635,6 +11712,11 @@ export interface components {
              * @default 0
              */
             quantum_um?: number;
+            /**
+             * @description bits of the converter in place of its step: range over 2 to the bits
+             * @default 0
+             */
+            bits?: number;
             /**
              * @description range of the converter to either side, µm
              * @default 40
@@ -13933,7 +14015,8 @@ export interface components {
              * @default {
              *       "since_ms": 0,
              *       "tail_share": 0.25,
-             *       "beside": ""
+             *       "beside": "",
+             *       "estimation": false
              *     }
              */
             metrics?: components["schemas"]["Stretch"];
@@ -13984,6 +14067,8 @@ export interface components {
             };
             /** @description the stage between the controller and the device */
             drive?: components["schemas"]["Drive"] | components["schemas"]["AxisDrive"];
+            /** @description the stages around the converters: filter and sampling before them, delay and amplifier behind */
+            board?: components["schemas"]["BoardParams"] | components["schemas"]["AxesBoardParams"];
             /** @description the limits at which the bench takes its outputs to their safe values */
             guard?: components["schemas"]["Guard"] | components["schemas"]["AxisGuard"];
             /** @description identifiers, each under a name of your own */
@@ -14708,6 +14793,11 @@ export interface components {
              * @default
              */
             beside?: string;
+            /**
+             * @description whether weighted estimates run headless too, for their figures
+             * @default false
+             */
+            estimation?: boolean;
         };
         /** Study */
         Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
@@ -15464,10 +15554,12 @@ export type AllanReadOut = components['schemas']['AllanReadOut'];
 export type AnchoredDiagnoser = components['schemas']['AnchoredDiagnoser'];
 export type ArxBankDiagnoser = components['schemas']['ArxBankDiagnoser'];
 export type AxesBankDiagnoser = components['schemas']['AxesBankDiagnoser'];
+export type AxesBoardParams = components['schemas']['AxesBoardParams'];
 export type AxesHypothesis = components['schemas']['AxesHypothesis'];
 export type AxisDrive = components['schemas']['AxisDrive'];
 export type AxisGuard = components['schemas']['AxisGuard'];
 export type BeamWidthStudy = components['schemas']['BeamWidthStudy'];
+export type BoardParams = components['schemas']['BoardParams'];
 export type Campaign = components['schemas']['Campaign'];
 export type CapacitiveSensor = components['schemas']['CapacitiveSensor'];
 export type ChirpReference = components['schemas']['ChirpReference'];

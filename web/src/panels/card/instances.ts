@@ -48,6 +48,11 @@ export function instances(
   const single = (id: string, title: string, family: string, name: string): Instance => {
     return { id, title, family, name, path: id, also: [] };
   };
+  /** The stages of the board around its converters have one table. */
+  const stage = (id: string, title: string): Instance => ({
+    ...single(id, title, "board", isFlat ? id : `axis_${id}`),
+    path: "board",
+  });
   return [
     ...(isFlat
       ? [single("reference", "Reference", "reference", text("reference", "kind", "sine"))]
@@ -60,7 +65,9 @@ export function instances(
       also: name === bench.controller ? ["controller"] : [],
     })),
     single("environment", "Environment", "board", "environment"),
+    stage("sampler", "Filter and sampling"),
     single("drive", "Drive", "board", isFlat ? "drive" : "axis_drive"),
+    stage("amplifier", "Delay and amplifier"),
     single("plant", "Device", "plant", text("plant", "model", isFlat ? "linear" : "gyroscope")),
     { ...single("sensor", "Sensor", "sense", sensor), also: [`sensors.${sensor}`] },
     ...Object.entries((parameters.identifiers ?? {}) as Record<string, { kind?: string }>).map(([id, { kind = "" }]) =>

@@ -7,6 +7,7 @@ it.each([
   ["stiffness n m", "N/m", "Stiffness"],
   ["humidity pct", "%", "Humidity"],
   ["deg per s", "deg/s", "Angular rate"],
+  ["slew v per us", "V/us", "Slew"],
   ["probability floor", "1", "Probability floor"],
 ])("%s [%s] is %s", (label, unit, title) =>
   expect(parameterTitle({ label, unit, meaning: "angular rate" })).toBe(title));

@@ -7,9 +7,11 @@ import { capital } from "../../ui/capital";
  * A parameter with its unit as its name has its meaning as its title.
  */
 export function parameterTitle({ label, unit, meaning }: Pick<Parameter, "label" | "unit" | "meaning">): string {
-  const suffix = unit === "%" ? "pct" : plain(unit);
-  if (suffix && [suffix, plain(unit.replaceAll("/", " per "))].includes(label)) return capital(meaning);
-  return capital(suffix && label.endsWith(` ${suffix}`) ? label.slice(0, -suffix.length - 1) : label);
+  const own = unit === "%" ? "pct" : plain(unit);
+  const spellings = own ? [own, plain(unit.replaceAll("/", " per "))] : [];
+  if (spellings.includes(label)) return capital(meaning);
+  const suffix = spellings.find((spelling) => label.endsWith(` ${spelling}`));
+  return capital(suffix ? label.slice(0, -suffix.length - 1) : label);
 }
 
 const plain = (unit: string) =>

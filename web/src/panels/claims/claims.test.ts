@@ -118,6 +118,10 @@ it("knows what belongs beside a signal, and what a metric is about", () => {
   const known = ["plant.displacement", "model.displacement", "drive.voltage", "kalman.probability.a", "kalman.nis.a"];
   expect(signalsOf("diagnosis.kalman.correct_fraction", known)).toEqual(["kalman.probability.a"]);
   expect(signalsOf("twins.b30.control.effort_ratio", known)).toEqual(["drive.voltage"]);
+  const weighted = ["kalman.weighted.displacement", "kalman.weighted.mass"];
+  const more = [...weighted, ...known];
+  expect(signalsOf("estimation.kalman.rms_error_um", more)).toEqual([weighted[0], "plant.displacement"]);
+  expect(signalsOf("estimation.kalman.rms_error_mass_pct", more)).toEqual([weighted[1]]);
   expect(signalsOf("control.amplitude_um", known)).toEqual(["plant.displacement", "model.displacement"]);
 });
 

@@ -4,7 +4,7 @@ import { Refusal, server } from "../../testing/fake-server";
 import { connect } from "../../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
-import { DeviceView, EnvironmentView } from "./device-panel";
+import { BoardView, DeviceView, EnvironmentView } from "./device-panel";
 
 const { bench } = await recordedBench("first-look");
 const gyroscope = await recordedBench("gyroscope");
@@ -103,4 +103,21 @@ it("has temperature and no pressure around the package of a gyroscope", async ()
   expect(screen.queryByRole("textbox", { name: /^Friction/ })).not.toBeInTheDocument();
   await enter("Temperature, K", "310");
   expect(board.commands).toEqual([{ set: { "environment.temperature_k": 310 } }]);
+});
+
+it.each([
+  ["Delay samples", "2", "delay_samples"],
+  ["Jitter, µs", "0.1", "jitter_us"],
+  ["Slew, V/µs", "0.5", "slew_v_per_us"],
+])("sets %s of the board while it runs", async (label, value, name) => {
+  const { board, enter } = mountPanel(bench, <BoardView />);
+  await screen.findByRole("heading", { name: "Filter and sampling" });
+  await enter(label, value);
+  expect(board.commands).toEqual([{ set: { [`board.${name}`]: Number(value) } }]);
+});
+
+it("has no slew in volts on a gyroscope", async () => {
+  mountPanel(gyroscope.bench, <BoardView />);
+  expect(await screen.findByRole("textbox", { name: /^Delay samples/ })).toBeVisible();
+  expect(screen.queryByRole("textbox", { name: /^Slew/ })).not.toBeInTheDocument();
 });

@@ -13,7 +13,7 @@ import { SensorChoice } from "./sensor-choice";
 
 const FRICTION = { label: "Friction dead band", unit: "nN", low: 0, high: 500, step: 1 };
 /** Blocks of the board beside device and sensor. */
-const BOARD_BLOCKS = ["drive", "guard", "model"];
+const BOARD_BLOCKS = ["sampler", "drive", "amplifier", "guard", "model"];
 
 /** The model of the device and its values. */
 export function DeviceView() {
@@ -85,7 +85,7 @@ export function EnvironmentView() {
   );
 }
 
-/** The rate of the board, and the values of its drive, its guard and its reference model. */
+/** The rate of the board, and the values of its stages, its drive, its guard and its reference model. */
 export function BoardView() {
   const rate = useBench((s) => s.bench?.sample_rate_khz);
   const dtMs = useBench((s) => s.bench?.dt_ms);

@@ -7,6 +7,7 @@ import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { be, mount } from "../../testing/render";
+import { besideEstimate, withWeighted } from "../../testing/weighted";
 import { LanesPanel } from "./lanes-panel";
 
 const { bench, status, events, frames } = await recordedBench("first-look");
@@ -48,6 +49,18 @@ it("says the verdict in words, and how often it was right", () => {
   board.status({ scores: { kalman: { ...score, winner: 3, false_switches: 2 } } });
   expect(screen.getByTitle("k+5")).toHaveAttribute("data-right", "false");
   expect(figure("false switches")).toHaveTextContent("2");
+});
+
+it("says the weighted output with its standard deviation, where the bench has it", async () => {
+  const board = connect(withWeighted(bench));
+  board.status(status);
+  mount(<LanesPanel />);
+  board.frame(
+    { "kalman.weighted.displacement": () => -2.5, "kalman.weighted.displacement_std": () => 0.02 },
+    { head: 400 },
+  );
+  await drawOnce();
+  expect(figure("weighted output")?.textContent?.replace(/\s/g, " ")).toBe("−2.50 µm ± 20.0 nm");
 });
 
 it("calls the delay before any fault a start-up", async () => {
@@ -115,7 +128,7 @@ it("subscribes to another window of time", async () => {
   const board = connect(bench);
   const { user } = mount(<LanesPanel />);
   await user.selectOptions(screen.getByRole("combobox", { name: "Time window" }), "100");
-  expect(board.subscriptions[0]).toMatchObject({ window_ms: 100 });
+  expect(besideEstimate(board.subscriptions)[0]).toMatchObject({ window_ms: 100 });
 });
 
 it("shows the card of the diagnoser", async () => {
@@ -150,10 +163,10 @@ it("races several diagnosers under one truth, with their delays and places", asy
 it("shows one of several diagnosers in full", async () => {
   const board = connect(rivals);
   const { user } = mount(<LanesPanel />);
-  expect(board.subscriptions).toHaveLength(3);
+  expect(besideEstimate(board.subscriptions)).toHaveLength(3);
   await user.selectOptions(screen.getByRole("combobox", { name: "Diagnosers shown" }), "second");
-  expect(board.subscriptions).toHaveLength(1);
-  expect(board.subscriptions[0].signals).toContain("second.probability.healthy");
+  expect(besideEstimate(board.subscriptions)).toHaveLength(1);
+  expect(besideEstimate(board.subscriptions)[0].signals).toContain("second.probability.healthy");
   expect(screen.getByRole("img", { name: /^Probability of/ })).toBeVisible();
 });
 
@@ -177,7 +190,7 @@ it("has no truth while a fault is to be found", async () => {
   const hidden = bench.signals.filter(({ name }) => !/^kalman\.(truth|unexplained)$/.test(name));
   const board = connect({ ...bench, signals: hidden, blind: { id: "b" } as never });
   mount(<LanesPanel />);
-  expect(board.subscriptions[0].signals).not.toContain("kalman.truth");
+  expect(besideEstimate(board.subscriptions)[0].signals).not.toContain("kalman.truth");
   expect(screen.queryByText("delay", { selector: "dt" })).not.toBeInTheDocument();
   const values = Object.fromEntries(kalman.names.map((name) => [`kalman.probability.${name}`, () => 0.1]));
   board.frame({ ...values, "kalman.winner": () => 0 }, { head: 2000 });

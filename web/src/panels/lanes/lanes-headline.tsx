@@ -8,6 +8,7 @@ import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/for
 import type { TruthSwitch } from "./delays";
 import { FalseSwitches } from "./false-switches";
 import styles from "./lanes.module.css";
+import { WeightedEstimate } from "./weighted-estimate";
 
 /** The figures of a diagnoser, to be read from the last row. */
 export function LanesHeadline({ id, names, switches }: { id: string; names: string[]; switches: TruthSwitch[] }) {
@@ -41,6 +42,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       </Figure>
       <Figure name="correct">{score ? formatPercent(score.correct_fraction) : "–"}</Figure>
       <Figure name="false switches">{score ? <FalseSwitches score={score} /> : "–"}</Figure>
+      <WeightedEstimate id={id} />
     </dl>
   );
 }

@@ -7,6 +7,7 @@ import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { mount } from "../../testing/render";
+import { besideEstimate } from "../../testing/weighted";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { LanesPanel } from "./lanes-panel";
 
@@ -30,7 +31,8 @@ async function mountLanes() {
 
 it("subscribes to the probabilities, the winner, the truth and what fits none", async () => {
   const { board } = await mountLanes();
-  expect(board.subscriptions.map(({ signals }) => signals)).toEqual([frames.kalman.signals]);
+  expect(besideEstimate(board.subscriptions).map(({ signals }) => signals)).toEqual([frames.kalman.signals]);
+  expect(board.subscriptions.flatMap(({ signals }) => signals)).toContain("kalman.weighted.displacement");
 });
 
 it("fills a lane for each hypothesis, in its colour", async () => {

@@ -8,6 +8,7 @@ import { logEntry } from "../../testing/log-entry";
 import { recordedAnswer, recordedBench } from "../../testing/recorded";
 import { penOf } from "../../testing/recording-pen";
 import { mount } from "../../testing/render";
+import { besideEstimate } from "../../testing/weighted";
 import { CANVAS } from "../../ui/palette";
 import { hypothesisStyle, traceColour } from "../../ui/trace-style";
 import { LanesPanel } from "./lanes-panel";
@@ -35,16 +36,18 @@ const log = (tick: number): LogEntry[] =>
 async function mountLanes(of: Bench) {
   const board = connect(of);
   const { user } = mount(<LanesPanel />);
-  await waitFor(() => expect(board.subscriptions).toHaveLength(1));
+  await waitFor(() => expect(besideEstimate(board.subscriptions)).toHaveLength(1));
   const windowMs = () => {
-    const [asked] = board.subscriptions;
+    const [asked] = besideEstimate(board.subscriptions);
     return asked.mode === "roll" ? asked.window_ms : undefined;
   };
   /** Where the stretches of the truth begin, and where the last ends, in shares of the field. */
   const truth = async (head: number) => {
     const { names } = bench.diagnosers.kalman;
     const now = (tick: number) => steps.filter((step) => step <= tick).length % names.length;
-    const values = Object.fromEntries(board.subscriptions[0].signals.map((signal) => [signal, () => 0]));
+    const values = Object.fromEntries(
+      besideEstimate(board.subscriptions)[0].signals.map((signal) => [signal, () => 0]),
+    );
     board.frame({ ...values, "kalman.winner": now, "kalman.truth": now }, { head });
     await drawOnce();
     const pen = penOf(screen.getByRole("img", { name: /^Probability of/ }));

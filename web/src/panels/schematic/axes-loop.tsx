@@ -6,6 +6,7 @@ import { formatIn } from "../../ui/format";
 import { useInstances } from "../card/instances";
 import { overridden } from "../controllers/slots";
 import { LoopDrawing } from "./loop-drawing";
+import { type StageMark, stageMarks } from "./stages";
 import {
   PARTNER,
   PARTNER_DRIVEN,
@@ -43,6 +44,13 @@ export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
     sense: [`controllers.${sense}`, title(`controllers.${sense}`)],
     force_y: ["drive", stage],
   };
+  const { drive: late, sensor: sampled } = stageMarks(document);
+  const stages: Record<string, StageMark | undefined> = {
+    pick_x: sampled,
+    pick_y: sampled,
+    force_x: late,
+    force_y: late,
+  };
   const faulted = new Set(acting.flatMap((fault) => twoAxisBoxesOf(fault.shows)));
   const taken = overridden("drive", slots, block);
   return (
@@ -53,6 +61,7 @@ export function AxesLoop({ axes, slots }: Pick<Bench, "axes" | "slots">) {
         card: what[box.id][0],
         kind: what[box.id][1],
         faulty: faulted.has(box.id),
+        stage: stages[box.id],
         waits: box.id === "drive" && taken !== undefined,
       }))}
       wires={[...TWO_AXIS_WIRES, ...(hasPartner ? PARTNER_WIRES : []), ...(drivesPartner ? [PARTNER_DRIVEN] : [])]}

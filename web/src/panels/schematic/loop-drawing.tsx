@@ -62,11 +62,16 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
           data-waits={box.waits}
           transform={`translate(${box.x} ${box.y})`}
         >
-          <title>{`${box.title} ${box.kind}: show its equations and parameters`}</title>
+          <title>{`${box.title} ${box.kind}${box.stage ? `, ${box.stage.words}` : ""}: show its equations and parameters`}</title>
           <rect width={BOX.width} height={BOX.height} rx="5" />
           <text x="6" y="15" className={styles.role}>
             {box.title}
           </text>{" "}
+          {box.stage && (
+            <text x={BOX.width - 6} y="15" textAnchor="end" className={styles.stage}>
+              {box.stage.mark}
+            </text>
+          )}
           <text x="6" y="31" className={styles.kind}>
             {shorten(box.kind)}
           </text>

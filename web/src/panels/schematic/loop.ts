@@ -67,6 +67,8 @@ export interface DrawnBox {
   /** A value in words, where no signal tells it. */
   says?: string;
   faulty: boolean;
+  /** A stage of the board there that acts: a mark, and words. */
+  stage?: { mark: string; words: string };
   /** Another controller does its work. */
   waits?: boolean;
 }

@@ -6,6 +6,7 @@ import { useBench } from "../../stream/bench-store";
 import { useInstances } from "../card/instances";
 import { boxOf, FAULT_ARROWS, type LoopBox } from "./loop";
 import { LoopDrawing } from "./loop-drawing";
+import { type StageMark, stageMarks } from "./stages";
 import type { Structure } from "./structure";
 import { useActingFaults } from "./use-live-values";
 
@@ -49,6 +50,7 @@ export function ResonatorLoop({ controller, diagnosers, structure }: ResonatorLo
     const instance = list.find((i) => i.id === cards[box.id]);
     return instance ? (block(instance.family, instance.name)?.title ?? instance.name.replaceAll("_", " ")) : "none";
   };
+  const stages: Partial<Record<LoopBox["id"], StageMark>> = stageMarks(parameters);
   const score = diagnoser ? scores[diagnoser] : undefined;
   const verdict =
     typeof score?.winner === "number" ? diagnosers[diagnoser].names[score.winner] : (score?.winner ?? "–");
@@ -62,6 +64,7 @@ export function ResonatorLoop({ controller, diagnosers, structure }: ResonatorLo
           kind: kind(box),
           card: cards[box.id],
           faulty: faulted.has(box.id),
+          stage: stages[box.id],
           says: box.id === "diagnosis" ? hypothesisWords(verdict) : undefined,
         })),
         ...structure.extra.map((box) => ({ ...box, card: box.card ?? cards.controller, faulty: false })),

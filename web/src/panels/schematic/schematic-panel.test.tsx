@@ -106,6 +106,21 @@ it("marks the box a fault is seen on, and names the fault", async () => {
   expect(within(loop()).queryByText("Added mass", { selector: "text" })).not.toBeInTheDocument();
 });
 
+it("marks the drive and the sensor whose stages of the board act, and says how", async () => {
+  const board = { delay_samples: 1, antialias_khz: 20 };
+  await mountPanel({ ...bench, parameters: { ...bench.parameters, board } });
+  expect(box(/^Drive Drive, arrives 1 sample late: show/i)).toHaveTextContent("late");
+  expect(box(/^Sensor .*, behind a filter of 20 kHz: show/)).toHaveTextContent("filter");
+});
+
+it("marks the stages of a gyroscope at both forces and both pick-offs", async () => {
+  const { bench } = gyroscope;
+  await mountPanel({ ...bench, parameters: { ...bench.parameters, board: { delay_fraction: 0.5, jitter_us: 0.1 } } });
+  const boxes = within(screen.getByRole("group", { name: /^Signal flow around/ }));
+  expect(boxes.getAllByText("late")).toHaveLength(2);
+  expect(boxes.getAllByText("jitter")).toHaveLength(2);
+});
+
 it("names a fault below the drawing where the drawing has no room for it", async () => {
   await mountPanel(driving("mrac"));
   expect(await screen.findByText(/Added mass/, { selector: "p span" })).toBeVisible();

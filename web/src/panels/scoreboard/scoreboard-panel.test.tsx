@@ -1,14 +1,17 @@
 import { screen, within } from "@testing-library/react";
 import { expect, it } from "vitest";
 import { connect } from "../../testing/fake-transport";
+import { drawOnce } from "../../testing/jsdom-gaps";
 import { recordedBench } from "../../testing/recorded";
 import { mount } from "../../testing/render";
+import { withWeighted } from "../../testing/weighted";
 import { ScoreboardPanel } from "./scoreboard-panel";
 
 const { bench, status } = await recordedBench("first-look");
 const { kalman } = status.scores;
+const weighing = withWeighted(bench);
 const cells = (name: string) =>
-  within(screen.getByRole("row", { name: new RegExp(`^${name} `) }))
+  within(within(screen.getAllByRole("table")[0]).getByRole("row", { name: new RegExp(`^${name} `) }))
     .getAllByRole("cell")
     .map((cell) => cell.textContent?.replace(/\s/g, " "));
 
@@ -50,4 +53,41 @@ it("is a region that keys reach, for it scrolls", async () => {
   board.status(status);
   await user.tab();
   expect(screen.getByRole("region", { name: "Scoreboard" })).toHaveFocus();
+});
+
+it("shows state and parameters as the probabilities weigh them, with standard deviations", async () => {
+  const board = connect(weighing);
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  const weighted = (values: Record<string, number>) =>
+    Object.fromEntries(Object.entries(values).map(([port, value]) => [`kalman.weighted.${port}`, () => value]));
+  board.frame(
+    weighted({
+      displacement: 1.5,
+      displacement_std: 0.014,
+      velocity: -20,
+      velocity_std: 0.25,
+      mass: 1.0496,
+      stiffness: 1,
+      damping: 1.003,
+    }),
+    { head: 400 },
+  );
+  await drawOnce();
+  const table = screen.getByRole("table", { name: /^Models weighted by their probabilities/ });
+  const shown = within(within(table).getByRole("row", { name: /^kalman / })).getAllByRole("cell");
+  expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
+    "1.50 µm± 14.0 nm",
+    "−20.0 mm/s± 250 µm/s",
+    "× 1.050",
+    "× 1.000",
+    "× 1.003",
+  ]);
+});
+
+it("has no weighted estimates on a bench that does not show them", () => {
+  const board = connect({ ...bench, signals: bench.signals.filter(({ name }) => !name.includes(".weighted.")) });
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  expect(screen.queryByRole("table", { name: /^Models weighted/ })).toBeNull();
 });

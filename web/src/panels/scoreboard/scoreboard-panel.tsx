@@ -1,3 +1,4 @@
+import { useMemo } from "react";
 import { diagnoserWords, hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { Confusion } from "../../ui/confusion";
@@ -8,6 +9,7 @@ import { meanDelay } from "../lanes/delays";
 import { FalseSwitches } from "../lanes/false-switches";
 import { START_UP } from "../lanes/lanes-headline";
 import styles from "./scoreboard.module.css";
+import { WeightedTable } from "./weighted-table";
 
 /** Each diagnoser against the truth the bench knows. */
 export function ScoreboardPanel() {
@@ -15,6 +17,7 @@ export function ScoreboardPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const entries = Object.entries(scores);
+  const ids = useMemo(() => Object.keys(diagnosers ?? {}), [diagnosers]);
   if (entries.length === 0)
     return (
       <EmptyState title="No score">
@@ -53,6 +56,7 @@ export function ScoreboardPanel() {
           })}
         </tbody>
       </table>
+      <WeightedTable ids={ids} />
       {entries.map(
         ([id, score]) =>
           score.confusion && (
