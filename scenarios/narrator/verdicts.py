@@ -69,7 +69,9 @@ class Verdicts:
             if self._winner in (-1, self._held):
                 continue
             last = self._since + need
-            stop = min(turns[at + 1][0] if at + 1 < len(turns) else samples.end, last + 1)
+            if at + 1 < len(turns) and turns[at + 1][0] <= last:  # it has not won often enough
+                continue
+            stop = min(samples.end, last + 1)
             self._gather(samples, stop)
             if not samples.first <= last < stop:
                 continue
