@@ -73,9 +73,7 @@ class Observer:
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
         """Return the findings in some rows of a bench as it is now, as the fields of log entries."""
-        if not len(outputs):
-            return []
-        found = self._caution(spec, first_tick)
+        found: list[Finding] = []
         changes = self._changes(outputs, taps)
         if not changes:
             return found
@@ -105,6 +103,11 @@ class Observer:
         other._last, other._found, other._cautions = self._last.copy(), self._found.copy(), set(self._cautions)
         return other
 
+    @property
+    def followed(self) -> tuple[IntArray, FloatArray]:
+        """The columns that it follows, outputs before taps, and the numbers they had last."""
+        return self._columns, self._last
+
     def seen(self) -> tuple[FloatArray, list[str]]:
         """Return the values it saw last and its warnings so far; another observer can continue from them."""
         return self._last.copy(), sorted(self._cautions)
@@ -113,8 +116,8 @@ class Observer:
         """Continue from the values that another observer of the same bench saw."""
         self._last[:], self._cautions = last, set(cautions)
 
-    def _caution(self, spec: Spec, tick: int) -> list[Finding]:
-        """Warn once of each block that assumes another course of the voltage than the real one."""
+    def caution(self, spec: Spec, tick: int) -> list[Finding]:
+        """Warn before a tick, once, of each block that assumes another course of the voltage than the real one."""
         if spec is self._cautioned:
             return []
         self._cautioned = spec

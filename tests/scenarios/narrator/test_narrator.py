@@ -203,7 +203,7 @@ def test_the_numbers_of_settling_follow_from_the_trace(seed: int) -> None:
 def test_slices_of_any_size_tell_the_same(seed: int) -> None:
     rng, scenario = np.random.default_rng(seed), random_bench(seed)
     board = build(scenario)
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     said: list[Sentence] = []
     while board.tick < (scenario.samples or 0):
         rows = board.advance(min(int(rng.integers(1, 60)), (scenario.samples or 0) - board.tick))
@@ -217,7 +217,7 @@ def test_slices_of_any_size_tell_the_same(seed: int) -> None:
 def test_a_copy_goes_on_alone(seed: int) -> None:
     scenario = random_bench(seed)
     board = build(scenario)
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     said: list[Sentence] = []
     while (rows := board.advance(min(307, (scenario.samples or 0) - board.tick))).count:
         twin = narrator.copy()
@@ -229,7 +229,7 @@ def test_a_copy_goes_on_alone(seed: int) -> None:
 
 def test_what_is_done_while_time_stands_is_told_when_its_tick_has_run_and_a_trip_at_once() -> None:
     board = build(get("first-look"))
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     narrator.follow(board.log, board.advance(300))
     board.apply(parse_command({"fault": "added_mass", "severity": 0.05}))
     board.apply(parse_command({"switch": "mrac"}))
