@@ -60,8 +60,8 @@ def loop() -> None:
     abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, rows, no, trace, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
-    arrays, seen = (table, none, none, none, no), (no, np.zeros(0), *history.rings, np.zeros(2, np.bool_))
-    kept.run(0, 0, 1.0, *arrays, 1, fold.begin(1), 0, watches, *seen)
+    arrays, resting = (table, none, none, none, no), np.zeros(2, np.bool_)
+    kept.run(0, 0, 1.0, *arrays, 1, fold.begin(1), 0, watches, no, np.zeros(0), *history.rings, resting)
     history.columns([0], 0, 1, 1)
     history.read([0], 0, 1)
 

@@ -83,6 +83,7 @@ class Board:
         self.observer = Observer(self.spec, self.wiring)
         self._linked: Wiring | None = None
         self._running: list[int] = []
+        self._addresses: dict[int, int] = {}
         self._rows = self._table = self.wiring.table
         self._parts: list[TablePart] = []
         self._awaited: list[SharedSegment] = []
@@ -277,6 +278,8 @@ class Board:
         if wiring is self._linked and not wiring.is_changed:
             return
         running = wiring.rest(self.spec)
+        if wiring is not self._linked:
+            self._addresses = {}
         if wiring is self._linked and running == self._running:
             self._rows[:, program.EVERY] = wiring.table[running, program.EVERY]
         else:
@@ -284,7 +287,8 @@ class Board:
             self._rows = wiring.table[running]
             self._idle = wiring.idle(running)
             if self.compiled:
-                self._rows[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
+                self._addresses |= {row: steps.address(wiring, row) for row in running if row not in self._addresses}
+                self._rows[:, program.ADDRESS] = [self._addresses[row] for row in running]
             else:
                 self._steps = [wiring.bound(row) for row in running]
         self._find_parts()

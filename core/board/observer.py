@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray, IntArray
+from core.board.document import Document
 from core.board.instances import scored
 from core.board.spec import Spec
 from core.board.wiring import Wiring
@@ -68,7 +69,7 @@ class Observer:
         self._columns = np.array(sorted(start), dtype=np.int64)
         self._last = np.array([start[column] for column in self._columns.tolist()])
         self._found = np.zeros((64, 2), dtype=np.int64)
-        self._cautioned: Spec | None = None
+        self._cautioned: Document | None = None
         self._cautions: set[str] = set()
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
@@ -118,9 +119,9 @@ class Observer:
 
     def caution(self, spec: Spec, tick: int) -> list[Finding]:
         """Warn before a tick, once, of each block that assumes another course of the voltage than the real one."""
-        if spec is self._cautioned:
+        if spec.document is self._cautioned:  # a fault changes none of these blocks
             return []
-        self._cautioned = spec
+        self._cautioned = spec.document
         new = [text for text in cautions(spec) if text not in self._cautions]
         self._cautions.update(new)
         return [{"kind": "warning", "text": text, "tick": tick} for text in new]
