@@ -18,6 +18,7 @@ from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.settling import Settling
+from scenarios.narrator.verdicts import Turns, Verdicts
 from scenarios.run import RunResult, build, run
 from tests.scenarios.narrator.random_bench import random_bench, told
 
@@ -282,6 +283,30 @@ def test_an_error_that_stays_at_the_edge_while_the_fault_acts_is_not_back() -> N
 
     assert told(error) == []
     assert told(np.where(ticks < 20_000, error, 0.02 * model)) == ["settled"]
+
+
+def test_a_winner_that_flickers_costs_no_look_at_its_residuals() -> None:
+    """On 5000 ticks with another winner at every third tick; the last of them may still win often enough."""
+    bench = get("ch5-seven-step").spec
+    looks: list[str] = []
+
+    class Counted:
+        first, end, began = 100, 5100, 0
+
+        def __contains__(self, name: object) -> bool:
+            return str(name).startswith("kalman.residual.")
+
+        def values(self, name: str, *_: int) -> Any:
+            looks.append(name)
+            return np.zeros(3)
+
+    (name,) = bench.diagnosers
+    verdicts = Verdicts(name, bench.diagnosers[name], 1, bench.dt_ms, alone=True)
+    ticks = [*range(100, 5100, 3)]
+    changes = {f"{name}.winner": Turns(ticks, [at % 2 + 1 for at in range(len(ticks))])}
+    verdicts._held = 0
+    assert [*verdicts.look(cast(NarratorSignals, Counted()), changes)] == []
+    assert len(looks) == 2
 
 
 class Traces(UserDict[str, Any]):
