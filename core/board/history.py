@@ -214,7 +214,7 @@ class History:
         self.end(rows.count)
 
     def begin(self, tick: int, idle: BoolArray) -> BoolArray:
-        """Prepare to add ticks, of which some taps stay 0; return the groups into which nothing is written."""
+        """Prepare to add ticks in which some taps stay 0; return which groups stay as they are."""
         if tick != self.end_tick:
             self._begin = self.end_tick = tick
         if tick != self._written:  # a jump: only groups idle for a whole ring are known to be steady

@@ -51,7 +51,7 @@ def _write(ring: Any, place: int, rows: FloatArray, first: int) -> None:
 
 @kernel
 def _fold_bucket(ticks: Any, lowest: Any, highest: Any) -> None:
-    """Fold the ticks of a bucket of the first level, halves of what is left with one another."""
+    """Fold the ticks of a bucket of the first level: the first half with the second, until one tick is left."""
     least, most = np.empty(FACTOR // 2, dtype=np.float32), np.empty(FACTOR // 2, dtype=np.float32)
     for c in range(LANES):
         for k in range(FACTOR // 2):
