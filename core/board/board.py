@@ -83,7 +83,6 @@ class Board:
         self.observer = Observer(self.spec, self.wiring)
         self._linked: Wiring | None = None
         self._running: list[int] = []
-        self._addresses: dict[int, int] = {}
         self._rows = self._table = self.wiring.table
         self._parts: list[TablePart] = []
         self._awaited: list[SharedSegment] = []
@@ -213,64 +212,40 @@ class Board:
 
     def _run(self, n: int, at: int, history: History | None) -> tuple[int, int]:
         """Run ticks without a command between them; return how many ran, and why the loop stopped."""
-        wiring = self.wiring
-        before = wiring.s.copy(), wiring.w.copy()
-        if history is None:
-            ran, why = self._loop(n, self.tick, self._outputs[at:], self._taps[at:], self.folds)
-        else:
-            ran, why = self._keep(n, history)
+        wiring, before = self.wiring, (self.wiring.s.copy(), self.wiring.w.copy())
+        rows = self._outputs[at:], self._taps[at:], self.folds
+        ran, why = self._loop(n, self.tick, *rows) if history is None else self._keep(n, history)
         if not lost(wiring, self.spec):
             self.lost = None
             return ran, why
         # the same ticks once more, one by one, so that the first loss does not depend on slices
         wiring.s[:], wiring.w[:] = before
-        rows = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
+        row = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
         for tick in range(self.tick, self.tick + ran):
-            self._loop(1, tick, *rows, self.folds.copy())
+            self._loop(1, tick, *row, self.folds.copy())
             self._look(tick + 1)
         return ran, why
 
     def _keep(self, n: int, history: History) -> tuple[int, int]:
         """Run ticks into a history."""
         wiring, resting = self.wiring, history.begin(self.tick, self._idle)
-        watches = self.pending.watches(wiring.index)
-        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io
-        rest: Any = (
-            len(self._idle),
-            self.folds,
-            wiring.trip,
-            watches,
-            *self.observer.followed,
-            *history.rings,
-            resting,
-        )
-        ran, why = kept.run(n, self.tick, self.dt_ms, *arrays, *rest)
+        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, len(self._idle), self.folds
+        watches, followed = self.pending.watches(wiring.index), self.observer.followed
+        rest: Any = *arrays, wiring.trip, watches, *followed, *history.rings, resting
+        ran, why = kept.run(n, self.tick, self.dt_ms, *rest)
         history.end(ran)
         return ran, why
+
+    def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
+        wiring, watches = self.wiring, self.pending.watches(self.wiring.index)
+        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, outputs, taps, folds
+        arguments = n, tick, self.dt_ms, *arrays, wiring.trip, watches
+        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def _look(self, tick: int) -> None:
         """Note at a tick edge which block has lost its state, if it had not before."""
         block = lost(self.wiring, self.spec)
         self.lost = (self.lost or Lost(block, tick)) if block else None
-
-    def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
-        wiring = self.wiring
-        arguments = (
-            n,
-            tick,
-            self.dt_ms,
-            self._table,
-            wiring.p,
-            wiring.s,
-            wiring.w,
-            wiring.io,
-            outputs,
-            taps,
-            folds,
-            wiring.trip,
-            self.pending.watches(wiring.index),
-        )
-        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
@@ -278,8 +253,6 @@ class Board:
         if wiring is self._linked and not wiring.is_changed:
             return
         running = wiring.rest(self.spec)
-        if wiring is not self._linked:
-            self._addresses = {}
         if wiring is self._linked and running == self._running:
             self._rows[:, program.EVERY] = wiring.table[running, program.EVERY]
         else:
@@ -287,8 +260,7 @@ class Board:
             self._rows = wiring.table[running]
             self._idle = wiring.idle(running)
             if self.compiled:
-                self._addresses |= {row: steps.address(wiring, row) for row in running if row not in self._addresses}
-                self._rows[:, program.ADDRESS] = [self._addresses[row] for row in running]
+                self._rows[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
             else:
                 self._steps = [wiring.bound(row) for row in running]
         self._find_parts()
@@ -350,12 +322,8 @@ class Board:
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
-                self.note(
-                    "board",
-                    "refused",
-                    f"{words.describe(entry.command, self.spec.library)}: {error}",
-                    command=entry.command,
-                )
+                text = f"{words.describe(entry.command, self.spec.library)}: {error}"
+                self.note("board", "refused", text, command=entry.command)
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         old, new = changes.carry_out(self, command)
