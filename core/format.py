@@ -37,6 +37,7 @@ UNITS = {
 """Units that take prefixes: the factor to the base unit, and its name."""
 
 PREFIXES = tuple(zip((1e12, 1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18), "TGMk mµnpfa", strict=True))
+MAYBE_MICRO, POWER = re.compile("u[msNVg]"), re.compile(r"\b(\d+(?:\.\d+)?)e([-+]?\d+)\b")
 _EXACT = Context(prec=100, rounding=ROUND_HALF_UP)
 
 
@@ -190,13 +191,15 @@ def unit_text(unit: str) -> str:
 
 def micro(text: str) -> str:
     """Return a text with its units as they are printed: "20 us, 3 um/V" is "20 µs, 3 µm/V"."""
+    if not MAYBE_MICRO.search(text):
+        return text
     counted = re.sub(r"(\d)\s?u([msNVg])\b", f"\\1{SPACE}µ\\2", text)
     return re.sub(r"(^|[\s(,;/*])u([mNV])\b(?!\s*=)", r"\1µ\2", counted)
 
 
 def typeset(text: str) -> str:
     """Return a text with units and powers of ten as they are printed: "1.2e-6 um" is "1.2×10⁻⁶ µm"."""
-    return re.sub(r"\b(\d+(?:\.\d+)?)e([-+]?\d+)\b", _powered, micro(text))
+    return POWER.sub(_powered, micro(text))
 
 
 def _powered(found: re.Match[str]) -> str:

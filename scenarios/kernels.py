@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from core import registry
-from core.board import abreast, fold, program
+from core.board import abreast, fold, kept, program
 from core.board.history import History
 from core.board.rows import Rows
 from core.board.wiring import wire
@@ -46,6 +46,7 @@ def load() -> None:
     """Load the kernels of a bench, or compile them, and compute one tick with them."""
     board = build(get(FIRST_BENCH))
     history = History(board.signals.outputs, len(board.signals.taps), 1)
+    board.advance_into(history, 1)
     history.append(board.advance(1))
     history.columns([0], 0, 1, 1)
 
@@ -60,7 +61,10 @@ def loop() -> None:
     abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, *kept, 0)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
+    arrays, resting = (table, none, none, none, no), np.zeros(2, np.bool_)
+    kept.run(0, 0, 1.0, *arrays, 1, fold.begin(1), 0, watches, no, np.zeros(0), *history.rings, resting)
     history.columns([0], 0, 1, 1)
+    history.read([0], 0, 1)
 
 
 def tasks(*, first_bench_only: bool = False) -> list[Task]:

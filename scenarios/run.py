@@ -229,7 +229,7 @@ def run(
     _fuse(board, samples)
     outputs = np.array([one.index for one in kept if one.kind == "output"], dtype=np.int64)
     inner = np.array([one.index - split for one in kept if one.kind == "tap"], dtype=np.int64)
-    narrator = Narrator(board.spec, list(board.signals), split) if narrate else None
+    narrator = Narrator(board.spec, list(board.signals)) if narrate else None
     narration: list[Sentence] = []
     began = time.perf_counter()
     with Samples(len(kept), samples) as stored:

@@ -9,16 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from core.block import BlockParams, FloatArray
-from core.board import changes, fold, program, steps, words
+from core.block import BlockParams, BoolArray, FloatArray
+from core.board import changes, fold, kept, program, steps, words
 from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import Document
 from core.board.fold import Words
+from core.board.history import History
 from core.board.instances import scored
+from core.board.kept import KeptTicks
 from core.board.log import Log, LogEntry
 from core.board.lost import EVERY, Lost, lost, next_look
-from core.board.observer import Observer
+from core.board.observer import Finding, Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
@@ -29,6 +31,7 @@ from core.diagnose.hypothesis import names_of
 from core.errors import InputError
 from core.loop import score
 from core.plant.record import supply
+from core.ports import RESERVED
 from core.signals import SignalTable
 
 CHUNK = 512
@@ -157,34 +160,49 @@ class Board:
         Pending commands take effect at the edges of the ticks they wait for, whatever the chunks. A block that has lost
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
-        n = min(n, CHUNK, self._left)
+        first, idle = self.tick, self._advance(n, None)
+        done = self.tick - first
+        return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
+
+    @property
+    def keeps(self) -> bool:
+        """Whether its ticks can go into a history without rows."""
+        return self.compiled
+
+    def advance_into(self, history: History, n: int) -> KeptTicks:
+        """Advance a board that ``keeps`` in the same way, with the ticks in a history instead of rows."""
+        first = self.tick
+        self._advance(n, history)
+        return KeptTicks(first, self.tick - first, history)
+
+    def _advance(self, n: int, history: History | None) -> BoolArray:
+        """Run ticks, and return the taps that stayed 0 throughout."""
+        first, end = self.tick, self.tick + min(n, CHUNK, self._left)
         if any(segment.address for segment in self._awaited):
             self._join()
-        first, done = self.tick, 0
         idle = self._idle
-        while done < n:
+        while self.tick < end:
             self.apply_due()
             idle = idle & self._idle
             if self.trip is not None:
                 break
-            end, upcoming = self.tick + n - done, self.pending.next_tick
+            for finding in self.observer.caution(self.spec, self.tick):
+                self.note("board", **finding)
+            upcoming = self.pending.next_tick
             stop = min(end, next_look(self.tick))
             stop = stop if upcoming is None else min(stop, upcoming)
-            ran, why = self._run(stop - self.tick, done)
-            rows = slice(done, done + ran)
-            for finding in self.observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows]):
+            ran, why = self._run(stop - self.tick, self.tick - first, history)
+            for finding in self._findings(ran, why, self.tick - first, history):
                 self.note("board", **finding)
-            if ran:
-                self.used |= {*self.spec.driving.values(), self.spec.measuring}
-            done += ran
+            self.used |= {*self.spec.driving.values(), self.spec.measuring}
             self.tick += ran
-            if why != program.DONE:
+            if why in (program.TRIPPED, program.WATCHED):
                 self.pending.meet(self.value, self.tick)
             if why == program.TRIPPED:
                 self._trip(*changes.cause(self))
             elif self.lost is not None and self.tick % EVERY == 0:
                 self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
-        return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
+        return idle
 
     @property
     def _left(self) -> int:
@@ -201,46 +219,54 @@ class Board:
         if self.spec.record is not None:
             supply(self.wiring.state_of("plant"), self.spec.plant.params, self.spec.record, self.tick, n)
 
-    def _run(self, n: int, at: int) -> tuple[int, int]:
+    def _findings(self, ran: int, why: int, at: int, history: History | None) -> list[Finding]:
+        """Return the findings in the ticks that have just run."""
+        if history is None:
+            rows = slice(at, at + ran)
+            return self.observer.look(self.spec, self.tick, self._outputs[rows], self._taps[rows])
+        if why == program.DONE:  # it stops behind each tick in which anything changes
+            return []
+        last = self.wiring.w[None, RESERVED:]
+        taps, outputs = len(self._idle), self._outputs.shape[1]
+        return self.observer.look(self.spec, self.tick + ran - 1, last[:, :outputs], last[:, outputs : outputs + taps])
+
+    def _run(self, n: int, at: int, history: History | None) -> tuple[int, int]:
         """Run ticks without a command between them; return how many ran, and why the loop stopped."""
-        wiring = self.wiring
         self._supply(n)
-        before = wiring.s.copy(), wiring.w.copy()
-        ran, why = self._loop(n, self.tick, self._outputs[at:], self._taps[at:], self.folds)
+        wiring, before = self.wiring, (self.wiring.s.copy(), self.wiring.w.copy())
+        rows = self._outputs[at:], self._taps[at:], self.folds
+        ran, why = self._loop(n, self.tick, *rows) if history is None else self._keep(n, history)
         if not lost(wiring, self.spec):
             self.lost = None
             return ran, why
         # the same ticks once more, one by one, so that the first loss does not depend on slices
         wiring.s[:], wiring.w[:] = before
-        rows = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
+        row = np.empty((1, self._outputs.shape[1])), np.empty((1, self._taps.shape[1]))
         for tick in range(self.tick, self.tick + ran):
-            self._loop(1, tick, *rows, self.folds.copy())
+            self._loop(1, tick, *row, self.folds.copy())
             self._look(tick + 1)
         return ran, why
+
+    def _keep(self, n: int, history: History) -> tuple[int, int]:
+        """Run ticks into a history."""
+        wiring, resting = self.wiring, history.begin(self.tick, self._idle)
+        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, len(self._idle), self.folds
+        watches, followed = self.pending.watches(wiring.index), self.observer.followed
+        rest: Any = *arrays, wiring.trip, watches, *followed, *history.rings, resting
+        ran, why = kept.run(n, self.tick, self.dt_ms, *rest)
+        history.end(ran)
+        return ran, why
+
+    def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
+        wiring, watches = self.wiring, self.pending.watches(self.wiring.index)
+        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, outputs, taps, folds
+        arguments = n, tick, self.dt_ms, *arrays, wiring.trip, watches
+        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def _look(self, tick: int) -> None:
         """Note at a tick edge which block has lost its state, if it had not before."""
         block = lost(self.wiring, self.spec)
         self.lost = (self.lost or Lost(block, tick)) if block else None
-
-    def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
-        wiring = self.wiring
-        arguments = (
-            n,
-            tick,
-            self.dt_ms,
-            self._table,
-            wiring.p,
-            wiring.s,
-            wiring.w,
-            wiring.io,
-            outputs,
-            taps,
-            folds,
-            wiring.trip,
-            self.pending.watches(wiring.index),
-        )
-        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
 
     def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
@@ -317,12 +343,8 @@ class Board:
             try:
                 self._do(entry.command, entry.actor)
             except InputError as error:
-                self.note(
-                    "board",
-                    "refused",
-                    f"{words.describe(entry.command, self.spec.library)}: {error}",
-                    command=entry.command,
-                )
+                text = f"{words.describe(entry.command, self.spec.library)}: {error}"
+                self.note("board", "refused", text, command=entry.command)
 
     def _do(self, command: Command, actor: str) -> LogEntry:
         old, new = changes.carry_out(self, command)

@@ -177,6 +177,11 @@ class Ensemble(Board):
             found |= {f"{name}:{key}": scores for key, scores in twin.scores().items()}
         return found
 
+    @property
+    def keeps(self) -> bool:
+        """The signals of its twins join its own in rows."""
+        return False
+
     def advance(self, n: int) -> Rows:
         """Run up to ``n`` ticks of all; fewer when the board trips. Rows of a tripped twin are NaN."""
         rows = super().advance(n)

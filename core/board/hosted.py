@@ -12,6 +12,7 @@ from core.board import program
 from core.board.board import Board, Checkpoint
 from core.board.commands import Command, ResetTrip, Switch
 from core.board.document import Document
+from core.board.history import History
 from core.board.log import LogEntry
 from core.board.outside import Conclusion, Law, Observation, OutsideBlock, Sample
 from core.board.parse import changed
@@ -88,6 +89,11 @@ class Hosted(Board):
         self._asked.sort(key=lambda one: one.cut)
         self._cut = self._asked[-1].cut
 
+    @property
+    def keeps(self) -> bool:
+        """Its ticks are cut into parts, and have rows."""
+        return False
+
     def fuse(self) -> None:
         """Run all rows one by one as before: a tick is cut before each block from outside."""
 
@@ -152,7 +158,7 @@ class Hosted(Board):
             if tick % row[program.EVERY] == 0:
                 step()
 
-    def _run(self, n: int, at: int) -> tuple[int, int]:
+    def _run(self, n: int, at: int, history: History | None) -> tuple[int, int]:
         wiring, cut = self.wiring, self._cut
         watches = self.pending.watches(wiring.index)
         for i in range(n):

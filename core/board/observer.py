@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray, IntArray
+from core.board.document import Document
 from core.board.instances import scored
 from core.board.spec import Spec
 from core.board.wiring import Wiring
@@ -68,14 +69,12 @@ class Observer:
         self._columns = np.array(sorted(start), dtype=np.int64)
         self._last = np.array([start[column] for column in self._columns.tolist()])
         self._found = np.zeros((64, 2), dtype=np.int64)
-        self._cautioned: Spec | None = None
+        self._cautioned: Document | None = None
         self._cautions: set[str] = set()
 
     def look(self, spec: Spec, first_tick: int, outputs: FloatArray, taps: FloatArray) -> list[Finding]:
         """Return the findings in some rows of a bench as it is now, as the fields of log entries."""
-        if not len(outputs):
-            return []
-        found = self._caution(spec, first_tick)
+        found: list[Finding] = []
         changes = self._changes(outputs, taps)
         if not changes:
             return found
@@ -105,6 +104,11 @@ class Observer:
         other._last, other._found, other._cautions = self._last.copy(), self._found.copy(), set(self._cautions)
         return other
 
+    @property
+    def followed(self) -> tuple[IntArray, FloatArray]:
+        """The columns that it follows, outputs before taps, and the numbers they had last."""
+        return self._columns, self._last
+
     def seen(self) -> tuple[FloatArray, list[str]]:
         """Return the values it saw last and its warnings so far; another observer can continue from them."""
         return self._last.copy(), sorted(self._cautions)
@@ -113,11 +117,11 @@ class Observer:
         """Continue from the values that another observer of the same bench saw."""
         self._last[:], self._cautions = last, set(cautions)
 
-    def _caution(self, spec: Spec, tick: int) -> list[Finding]:
-        """Warn once of each block that assumes another course of the voltage than the real one."""
-        if spec is self._cautioned:
+    def caution(self, spec: Spec, tick: int) -> list[Finding]:
+        """Warn before a tick, once, of each block that assumes another course of the voltage than the real one."""
+        if spec.document is self._cautioned:  # a fault changes none of these blocks
             return []
-        self._cautioned = spec
+        self._cautioned = spec.document
         new = [text for text in spec.cautions if text not in self._cautions]
         self._cautions.update(new)
         return [{"kind": "warning", "text": text, "tick": tick} for text in new]

@@ -5,24 +5,40 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
+from core.block import IntArray
 from core.board.instances import scored
+from core.board.kept import Ticks
 from core.board.log import Log, LogEntry
-from core.board.observer import follow
-from core.board.rows import Rows
 from core.board.spec import Spec
+from core.kernel import kernel
 from core.signals import Signal
 from scenarios.narrator.doings import MEASURED, MODEL, SCALES, TOLD, TRIPS, Doings
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import KINDS, Sentence
 from scenarios.narrator.settling import Settling
-from scenarios.narrator.verdicts import Verdicts
+from scenarios.narrator.verdicts import Turns, Verdicts
 
 PORTS = ("winner", "truth")
 """Ports of a diagnoser that are followed from tick to tick, and the ports that are read when it changes."""
 EACH = ("probability", "residual", "nis")
+
+
+@kernel
+def _turns(values: Any, last: Any, found: IntArray, ends: IntArray) -> int:
+    """Write down where each signal differs from the tick before, one signal after another; return how often."""
+    count = 0
+    for k in range(values.shape[0]):
+        for i in range(values.shape[1]):
+            if values[k, i] != last[k]:
+                found[count] = i
+                count += 1
+                last[k] = values[k, i]
+        ends[k] = count
+    return count
 
 
 class Narrator:
@@ -37,11 +53,9 @@ class Narrator:
         The bench as it begins.
     signals : sequence of Signal
         The signals that sentences may use.
-    outputs : int
-        How many of the columns of the rows are outputs.
     """
 
-    def __init__(self, spec: Spec, signals: Sequence[Signal], outputs: int) -> None:
+    def __init__(self, spec: Spec, signals: Sequence[Signal]) -> None:
         column = {signal.name: signal.index for signal in signals}
         chosen = [
             name for name, section in spec.diagnosers.items() if scored(section.block) and f"{name}.winner" in column
@@ -52,12 +66,11 @@ class Narrator:
         ]
         self._doings, self._settling = Doings(spec), Settling(spec.dt_ms)
         self._samples = NarratorSignals(
-            column, outputs, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
+            column, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
         )
         self._followed = [f"{name}.{port}" for name in chosen for port in PORTS if f"{name}.{port}" in column]
         self._columns = np.array([column[name] for name in self._followed], dtype=np.int64)
-        self._name_of = dict(zip(self._columns.tolist(), self._followed, strict=True))
-        self._last = np.full(len(self._followed), np.nan)
+        self._last = np.full(len(self._followed), np.nan, np.float32)
         self._signals = [
             *self._followed,
             *(name for name in (MODEL, MEASURED, *SCALES.values()) if name in column),
@@ -71,7 +84,7 @@ class Narrator:
         if entry.kind in TOLD:
             self._heard = [*self._heard, entry]
 
-    def follow(self, log: Log, rows: Rows | None = None) -> list[Sentence]:
+    def follow(self, log: Log, rows: Ticks | None = None) -> list[Sentence]:
         """Return the sentences after some more rows, or none, of a board with its log."""
         new = list(takewhile(lambda entry: entry.seq > self._last_heard, reversed(log)))
         self._last_heard = log.last
@@ -79,7 +92,7 @@ class Narrator:
             self.hear(entry)
         return self.tell() if rows is None else self.look(rows)
 
-    def look(self, rows: Rows) -> list[Sentence]:
+    def look(self, rows: Ticks) -> list[Sentence]:
         """Return the sentences after some more rows, which may be none."""
         if not rows.count:
             return self.tell()
@@ -91,20 +104,17 @@ class Narrator:
         self._samples.hide()
         return sorted(found, key=lambda said: (said.tick, KINDS.index(said.kind)))
 
-    def _changes(self, rows: Rows) -> dict[str, list[tuple[int, int]]]:
-        """Return tick and new value of each change of the winners and truths."""
-        last, found = self._last, np.zeros((64, 2), dtype=np.int64)
-        while True:
-            self._last = last.copy()
-            count = follow(rows.outputs, rows.taps, self._columns, self._last, found)
-            if count <= len(found):
-                break
-            found = np.zeros((count, 2), dtype=np.int64)
-        changes: dict[str, list[tuple[int, int]]] = {}
-        for column, row in found[:count].tolist():
-            changes.setdefault(self._name_of[column], []).append(
-                (rows.first_tick + row, int(rows.outputs[row, column]))
-            )
+    def _changes(self, rows: Ticks) -> dict[str, Turns]:
+        """Return the changes of the winners and truths."""
+        values = rows.singles(self._columns, 0, rows.count)
+        found, ends = np.empty(values.size, np.int64), np.empty(len(values), np.int64)
+        self._last = self._last.copy()  # a copy of this continues independently
+        count = _turns(values, self._last, found, ends)
+        changes, start = dict[str, Turns](), 0
+        for name, own, end in zip(self._followed, values, ends.tolist() if count else [], strict=False):
+            if end > start:
+                at, start = found[start:end], end
+                changes[name] = Turns((rows.first_tick + at).tolist(), own[at].astype(np.int64).tolist())
         return changes
 
     def tell(self) -> list[Sentence]:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray
-from core.board.rows import Rows
+from core.block import FloatArray
+from core.board.kept import Ticks
 from core.kernel import kernel
 
 PLACES = 128
@@ -16,13 +16,12 @@ PLACES = 128
 
 
 @kernel
-def _keep(ring: Any, outputs: FloatArray, taps: FloatArray, columns: IntArray, first: int) -> None:
-    """Write the last rows of some columns into a ring, in single precision."""
-    places, width = ring.shape[1], outputs.shape[1]
-    for i in range(max(0, len(outputs) - places), len(outputs)):
-        for k in range(len(columns)):
-            value = outputs[i, columns[k]] if columns[k] < width else taps[i, columns[k] - width]
-            ring[k, (first + i) % places] = value
+def _keep(ring: Any, values: Any, first: int) -> None:
+    """Write ticks into a ring."""
+    places = ring.shape[1]
+    for k in range(values.shape[0]):
+        for i in range(values.shape[1]):
+            ring[k, (first + i) % places] = values[k, i]
 
 
 class NarratorSignals:
@@ -34,18 +33,16 @@ class NarratorSignals:
     ----------
     columns : dict
         Column of each signal in the rows, outputs first.
-    outputs : int
-        How many of the columns are outputs.
     kept : sequence of str
         The signals that are kept beyond the rows.
     """
 
-    def __init__(self, columns: dict[str, int], outputs: int, kept: Sequence[str]) -> None:
-        self._columns, self._outputs = columns, outputs
+    def __init__(self, columns: dict[str, int], kept: Sequence[str]) -> None:
+        self._columns = columns
         self._places = {name: place for place, name in enumerate(kept)}
         self._kept = np.array([columns[name] for name in kept], dtype=np.int64)
         self._ring = np.zeros((len(kept), PLACES), np.float32)
-        self._rows: Rows | None = None
+        self._rows: Ticks | None = None
         self.began: int | None = None
         """The first tick that was ever shown."""
         self.first = self.end = 0
@@ -54,7 +51,7 @@ class NarratorSignals:
     def __contains__(self, name: object) -> bool:
         return name in self._columns
 
-    def show(self, rows: Rows) -> None:
+    def show(self, rows: Ticks) -> None:
         """Look at rows that follow the last."""
         self._rows, self.first, self.end = rows, rows.first_tick, rows.first_tick + rows.count
         self.began = self.first if self.began is None else self.began
@@ -62,12 +59,13 @@ class NarratorSignals:
     def hide(self) -> None:
         """Let the rows go; the last of them are kept."""
         if (rows := self._rows) is not None:
-            _keep(self._ring, rows.outputs, rows.taps, self._kept, rows.first_tick)
+            first = max(0, rows.count - PLACES)
+            _keep(self._ring, rows.singles(self._kept, first, rows.count), rows.first_tick + first)
         self._rows, self.first = None, self.end
 
     def copy(self) -> NarratorSignals:
         """Return an independent copy."""
-        twin = NarratorSignals(self._columns, self._outputs, list(self._places))
+        twin = NarratorSignals(self._columns, list(self._places))
         twin._ring, twin.began, twin.first, twin.end = self._ring.copy(), self.began, self.end, self.end
         return twin
 
@@ -78,10 +76,8 @@ class NarratorSignals:
             ticks = np.arange(first, min(end, self.first))
             parts.append(self._ring[self._places[name], ticks % PLACES])
         if end > self.first and self._rows is not None:
-            column, rows = self._columns[name], slice(max(first - self.first, 0), end - self.first)
-            is_output = column < self._outputs
-            values = self._rows.outputs[rows, column] if is_output else self._rows.taps[rows, column - self._outputs]
-            parts.append(values.astype(np.float32))
+            column, last = np.array([self._columns[name]]), min(end, self.end) - self.first
+            parts.append(self._rows.singles(column, max(first - self.first, 0), last)[0])
         return np.concatenate(parts)[::every].astype(np.float64) if parts else np.empty(0)
 
     def at(self, name: str, tick: int) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,16 @@ from scenarios.narrator.words import figure, hypothesis_words, length, moment
 
 TURNS = int(HELD)
 """Verdicts in a row for one hypothesis after which it counts, by the rule of the score."""
+
+
+class Turns(NamedTuple):
+    """Changes of a signal of whole numbers: their ticks, and the numbers from there on."""
+
+    ticks: list[int]
+    values: list[int]
+
+
+NEVER = Turns([], [])
 
 
 class Verdicts:
@@ -55,21 +66,23 @@ class Verdicts:
         self._changed: int | None = None
         self._missed: list[list[FloatArray]] = []
 
-    def look(self, samples: NarratorSignals, changes: Mapping[str, list[tuple[int, int]]]) -> Iterator[Sentence]:
-        """Tell the verdicts in the rows of now, by tick and value of each change of winner and truth."""
+    def look(self, samples: NarratorSignals, changes: Mapping[str, Turns]) -> Iterator[Sentence]:
+        """Tell the verdicts in the rows of now, by the changes of winner and truth."""
         if samples.first == 0:
             self._held = self._nominal
-        turns = changes.get(f"{self._name}.winner", [])
-        truths = [(-1, self._truth, self._changed), *self._truths(samples, changes.get(f"{self._name}.truth", []))]
+        ticks, winners = changes.get(f"{self._name}.winner", NEVER)
+        truths = [(-1, self._truth, self._changed), *self._truths(samples, changes.get(f"{self._name}.truth", NEVER))]
         need = (TURNS - 1) * self._every
-        for at in range(-1, len(turns)):
+        # only who wins often enough in a row counts, and who wins at the end
+        edges = np.array([self._since, *ticks, samples.end + need + 1])
+        for at in (np.flatnonzero(edges[1:] - edges[:-1] > need) - 1).tolist():
             if at >= 0:
-                self._since, self._winner = turns[at]
+                self._since, self._winner = ticks[at], winners[at]
                 self._missed = []
             if self._winner in (-1, self._held):
                 continue
             last = self._since + need
-            stop = min(turns[at + 1][0] if at + 1 < len(turns) else samples.end, last + 1)
+            stop = min(samples.end, last + 1)
             self._gather(samples, stop)
             if not samples.first <= last < stop:
                 continue
@@ -77,11 +90,9 @@ class Verdicts:
             if old is not None:
                 yield self._sentence(samples, last, old, next(one for one in reversed(truths) if one[0] <= last))
 
-    def _truths(
-        self, samples: NarratorSignals, changes: list[tuple[int, int]]
-    ) -> Iterator[tuple[int, int, int | None]]:
+    def _truths(self, samples: NarratorSignals, changes: Turns) -> Iterator[tuple[int, int, int | None]]:
         """Return tick and value of each change of the truth, and when it changed last; the beginning is no change."""
-        for tick, value in changes:
+        for tick, value in zip(*changes, strict=True):
             self._changed = tick if tick != samples.began else None
             self._truth = value
             yield tick, value, self._changed

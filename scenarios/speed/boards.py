@@ -90,18 +90,18 @@ def with_all_diagnosers() -> Board:
 
 
 def live_cost(board: Board, ticks: int = 100 * CHUNK) -> Callable[[], float]:
-    """Return the measurement of a tick as a live bench runs it, ns: blocks, trace, digest, log, history.
+    """Return the measurement of a tick as a live bench runs it, ns: blocks, digest, log, history.
 
     The history is full, as it is from some seconds on: before, the system hands out its memory page by page.
     """
     outputs, taps = board.signals.outputs, len(board.signals.taps)
     history = History(outputs, taps, History.ticks_within(HISTORY_MB, outputs, taps))
     while board.tick < history.capacity:
-        history.append(board.advance(CHUNK))
+        board.advance_into(history, CHUNK)
 
     def work() -> None:
         for _ in range(ticks // CHUNK):
-            history.append(board.advance(CHUNK))
+            board.advance_into(history, CHUNK)
 
     def measure() -> float:
         cost = cpu_ns(work, ticks)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 from core.board.board import Board
 from core.board.document import Document
 from core.board.history import History
-from core.board.rows import Rows
+from core.board.kept import Ticks
 from core.board.track import Deed, Track
 from core.signals import Signal
 from scenarios.schema import Scenario
@@ -132,7 +132,7 @@ class LiveBench:
         self.time: DeviceTime = DeviceTime(self, time_scale, scenario.samples, metrics)
         self.changes, self.snapshots = Changes(self), Snapshots(self)
         self.recordings, self.measuring = ActiveRecordings(self), Measuring()
-        self.narration = Narration(board.spec, board.signals, board.signals.outputs)
+        self.narration = Narration(board.spec, board.signals)
         self._remember()
         self.events = EventLog(self._happened)
         self._closed = False
@@ -228,31 +228,40 @@ class LiveBench:
         """Run ticks, at most one slice; keep them, record them, note the events; return their number."""
         view = self.view
         watch = self.watch if view is None else None  # a condition would reveal hidden values
-        rows = self._advance(ticks if watch is None else watch.room(self.board.tick, ticks))
-        self.narration.look(rows)
+        ran = self._advance(ticks if watch is None else watch.room(self.board.tick, ticks))
+        self.narration.look(ran)
         self._remember()
-        if rows.count:
-            self._metrics.ticks.inc(rows.count)
-            self.recordings.take(rows)
+        if ran.count:
+            self._metrics.ticks.inc(ran.count)
+            self.recordings.take(ran)
             if view is not None:
-                view.narration.look(rows)
+                view.narration.look(ran)
             if watch is not None:
                 watch.look(self)
         if self.board.trip is not None and self.is_started and not self._has_due():
             self.time.is_started = False
             self.refresh_status()
-        return rows.count
+        return ran.count
 
-    def _advance(self, ticks: int) -> Rows:
-        """Run ticks, as many as a slice has, and keep their rows in the history."""
+    def _advance(self, ticks: int) -> Ticks:
+        """Run ticks, as many as a slice has, and keep them in the history."""
         began = self.clock()
-        rows = self.board.advance(min(ticks, max(1, int(SLICE_S / self._tick_s))))
-        if rows.count:
+        ran = self._run(min(ticks, max(1, int(SLICE_S / self._tick_s))))
+        if ran.count:
             took = max(self.clock() - began, 1e-9)
-            self._tick_s = min(took / rows.count, MOST_SLOWER * self._tick_s)
-            self.history.append(rows)
+            self._tick_s = min(took / ran.count, MOST_SLOWER * self._tick_s)
             if self.track is not None and isinstance(self.board, Board):
                 self.track.follow(self.board)
+        return ran
+
+    def _run(self, ticks: int) -> Ticks:
+        """Run ticks into the history; a recording that waits for a condition needs rows, which are not rounded."""
+        board = self.board
+        if isinstance(board, Board) and board.keeps and not self.recordings.armed:
+            return board.advance_into(self.history, ticks)
+        rows = board.advance(ticks)
+        if rows.count:
+            self.history.append(rows)
         return rows
 
     def journal(self, *, with_past: bool = False, is_lean: bool = False) -> Journal:

@@ -8,8 +8,8 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from core.board.kept import Ticks
 from core.board.log import Log
-from core.board.rows import Rows
 from core.board.spec import Spec
 from core.signals import Signal
 from scenarios.narrator.narrator import Narrator
@@ -66,15 +66,13 @@ class Narration:
         The bench as it begins.
     signals : sequence of Signal
         The signals that sentences may use.
-    outputs : int
-        How many of the columns of its rows are outputs.
     """
 
-    def __init__(self, spec: Spec, signals: Iterable[Signal], outputs: int) -> None:
-        self._signals, self._outputs = list(signals), outputs
+    def __init__(self, spec: Spec, signals: Iterable[Signal]) -> None:
+        self._signals = list(signals)
         self._lock = threading.Lock()
         self._sentences: deque[Sentence] = deque(maxlen=KEPT)
-        self._narrator = Narrator(spec, self._signals, outputs)
+        self._narrator = Narrator(spec, self._signals)
         self._earlier: dict[int, tuple[Narrator, int]] = {}
         self.mark = NarrationPlace(0, 0)
 
@@ -82,11 +80,11 @@ class Narration:
         """Take an event of the bench."""
         self._narrator.hear(event)
 
-    def look(self, rows: Rows) -> None:
+    def look(self, rows: Ticks) -> None:
         """Write the sentences after some more rows."""
         self.say(self._narrator.look(rows))
 
-    def follow(self, log: Log, rows: Rows | None = None) -> None:
+    def follow(self, log: Log, rows: Ticks | None = None) -> None:
         """Write the sentences after some more rows of a board that is computed again, which has a log of its own."""
         self.say(self._narrator.follow(log, rows))
 
@@ -113,7 +111,7 @@ class Narration:
     def go_to(self, told: Told | None, spec: Spec) -> None:
         """Continue from the sentences at a moment; without them, begin again with the bench."""
         if told is None:
-            self._jump(Told(Narrator(spec, self._signals, self._outputs), (), 0, {}))
+            self._jump(Told(Narrator(spec, self._signals), (), 0, {}))
         else:
             self._jump(replace(told, narrator=told.narrator.copy()))
 

@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from core.board.condition import Condition, parse_condition
+from core.board.kept import Ticks
 from core.board.rows import Rows
 from scenarios.report.traces import schema_of
 from server.bench.description import document_of
@@ -169,12 +170,12 @@ class ActiveRecordings:
         for recorder in self.under_way.values():
             recorder.note(event.tick, event.model_dump_json())
 
-    def take(self, rows: Rows) -> None:
-        """Record some rows, and begin the recordings whose condition they meet."""
+    def take(self, ticks: Ticks) -> None:
+        """Record some ticks, and begin the recordings whose condition they meet, for which they need rows."""
         if self.under_way:
-            self._record_rows(rows)
-        if self.armed:
-            self._watch(rows)
+            self._record(ticks)
+        if isinstance(ticks, Rows):
+            self._watch(ticks)
 
     def _begin(self, recorder: Recorder, at: int, past: int, ticks: int | None) -> int:
         """Begin a recording at a tick of the past or at this one."""
@@ -192,11 +193,11 @@ class ActiveRecordings:
         bench.refresh_status()
         return first
 
-    def _record_rows(self, rows: Rows) -> None:
-        """Pass copies of rows to the recordings, and forget recordings that have ended by themselves."""
-        samples = np.hstack((rows.outputs, rows.taps)).astype(np.float32).T
+    def _record(self, ticks: Ticks) -> None:
+        """Pass ticks to the recordings, and forget recordings that have ended by themselves."""
+        samples = ticks.singles(np.arange(len(self._bench.signals)), 0, ticks.count)
         for key, recorder in list(self.under_way.items()):
-            recorder.append(rows.first_tick, samples)
+            recorder.append(ticks.first_tick, samples)
             if not recorder.is_open:
                 self.stop(key)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.board.board import Board
 from core.board.document import Document
+from core.board.kept import Ticks
 from core.board.log import LogEntry
 from core.board.pending import PendingQueue
 from core.board.rows import Rows
@@ -172,7 +173,7 @@ TickSource = Board | Tape
 
 def narrated(tape: Tape, path: Path, events: list[dict[str, Any]]) -> list[Sentence]:
     """Return the sentences of the narrator about a recording, made from its samples and its events."""
-    narrator = Narrator(tape.spec, tape.recorded, tape.signals.outputs)
+    narrator = Narrator(tape.spec, tape.recorded)
     for number, event in enumerate(events, 1):
         narrator.hear(LogEntry(seq=number, **event))
     own, found = Tape(tape.recorded_board, path, narrator.signals), []
@@ -284,7 +285,7 @@ class Transcript(Narration):
     def hear(self, event: Event) -> None:
         """Leave it as it is."""
 
-    def look(self, rows: Rows) -> None:
+    def look(self, rows: Ticks) -> None:
         """Leave it as it is."""
 
 
@@ -293,7 +294,7 @@ def play(bench: LiveBench, tape: Tape, recording: RecordingDetail, path: Path, m
     events = [{name: event.get(name) for name in RECORDED} for event in recording.events or []]
     bench.replay_of = recording.id
     bench.time = Playing(bench, tape, bench.time.pacer.scale, metrics)
-    bench.narration = Transcript(tape.spec, [], 0)
+    bench.narration = Transcript(tape.spec, [])
     bench.narration.say(narrated(tape, path, events))
     for event in events:
         bench.events.keep(**event)

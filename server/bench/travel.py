@@ -112,8 +112,8 @@ class Past:
         on_share : callable
             Called with the share of the ticks that is done; it may raise an error to end the computation.
         """
-        board, outputs = Board.restore(self.passage.checkpoint), self.bench.board.signals.outputs
-        narration = Narration(board.spec, self.bench.signals, outputs)
+        board = Board.restore(self.passage.checkpoint)
+        narration = Narration(board.spec, self.bench.signals)
         narration.go_to(self.told, board.spec)
         history = self.bench.empty_history()
         if self.seen is not None:

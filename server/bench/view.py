@@ -76,7 +76,7 @@ class View:
         """Number of the first event of the bench since it has the rules."""
         self.events = EventLog(lambda _event: None)
         told = [signal for signal in self.signals if rules.may_tell(signal.name)]
-        self.narration = Narration(bench.board.spec, told, bench.board.signals.outputs)
+        self.narration = Narration(bench.board.spec, told)
         self.captures = Captures(bench, bench.captures.most_bytes)
         self._known: tuple[BenchStatus, int] | None = None
         self._status: BenchStatus | None = None

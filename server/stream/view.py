@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from core.board.history import FACTOR
+from core.board.pyramid import FACTOR
 from server.bench.captures import MOST, CaptureSet
 from server.stream.behind import Behind
 from server.stream.codec import FROZEN, TRIGGERED, WAITING, Picture

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from core.board.history import History
 from core.board.stored import revived
 from scenarios.run import run
 from scenarios.schema import Scenario
@@ -145,16 +146,16 @@ def test_a_dead_thread_trips_its_benches_and_asks_for_a_restart(live: Live) -> N
 def stick(live: Live, bench: str) -> Callable[[], None]:
     """Let the next slice of a bench hang; return the function that releases it."""
     let_go, board = threading.Event(), live.service.benches.get(bench).board
-    real = board.advance
+    real = board.advance_into
 
-    def advance(ticks: int) -> Any:
+    def advance(history: History, ticks: int) -> Any:
         let_go.wait()
-        return real(ticks)
+        return real(history, ticks)
 
-    board.advance = advance
+    board.advance_into = advance
 
     def free() -> None:
-        board.advance = real
+        board.advance_into = real
         let_go.set()
 
     return free

@@ -127,7 +127,7 @@ class LivePair(AdvancePair):
 
     def _run_board(self) -> None:
         for _ in range(TICKS // CHUNK):
-            self.history.append(self.board.advance(CHUNK))
+            self.board.advance_into(self.history, CHUNK)
 
     def _run_twin(self) -> None:
         assert self.twin is not None

@@ -11,7 +11,7 @@ import numpy as np
 from llvmlite import ir
 
 from core.block import BoolArray
-from core.board import fold, history, program
+from core.board import fold, program, pyramid
 from core.board.board import Board
 from core.board.wiring import Wiring
 from core.compile import code
@@ -79,8 +79,8 @@ def _constants(wiring: Wiring) -> dict[str, Any]:
         "STATES": len(wiring.s),
         "OUTPUTS": wiring.signals.outputs,
         "TAPS": len(wiring.signals.taps),
-        "LANES": history.LANES,
-        "FACTOR": history.FACTOR,
+        "LANES": pyramid.LANES,
+        "FACTOR": pyramid.FACTOR,
         **{f"FACTOR_{name}": f"UINT64_C({value})" for name, value in zip("AB", factors, strict=True)},
         **{f"SHIFT_{name}": value for name, value in zip("AB", shifts, strict=True)},
         "INFINITE_BITS": f"UINT64_C({infinite})",

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from core.block import FloatArray
 from core.board.board import CHUNK, Board
-from core.board.history import LANES, History
+from core.board.history import History
+from core.board.pyramid import LANES
 from scenarios.speed.anchor.text import BoardMoment
 
 Array = NDArray[Any]

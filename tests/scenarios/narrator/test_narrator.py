@@ -18,6 +18,7 @@ from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.settling import Settling
+from scenarios.narrator.verdicts import Turns, Verdicts
 from scenarios.run import RunResult, build, run
 from tests.scenarios.narrator.random_bench import random_bench, told
 
@@ -203,7 +204,7 @@ def test_the_numbers_of_settling_follow_from_the_trace(seed: int) -> None:
 def test_slices_of_any_size_tell_the_same(seed: int) -> None:
     rng, scenario = np.random.default_rng(seed), random_bench(seed)
     board = build(scenario)
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     said: list[Sentence] = []
     while board.tick < (scenario.samples or 0):
         rows = board.advance(min(int(rng.integers(1, 60)), (scenario.samples or 0) - board.tick))
@@ -217,7 +218,7 @@ def test_slices_of_any_size_tell_the_same(seed: int) -> None:
 def test_a_copy_goes_on_alone(seed: int) -> None:
     scenario = random_bench(seed)
     board = build(scenario)
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     said: list[Sentence] = []
     while (rows := board.advance(min(307, (scenario.samples or 0) - board.tick))).count:
         twin = narrator.copy()
@@ -229,7 +230,7 @@ def test_a_copy_goes_on_alone(seed: int) -> None:
 
 def test_what_is_done_while_time_stands_is_told_when_its_tick_has_run_and_a_trip_at_once() -> None:
     board = build(get("first-look"))
-    narrator = Narrator(board.spec, list(board.signals), board.signals.outputs)
+    narrator = Narrator(board.spec, list(board.signals))
     narrator.follow(board.log, board.advance(300))
     board.apply(parse_command({"fault": "added_mass", "severity": 0.05}))
     board.apply(parse_command({"switch": "mrac"}))
@@ -282,6 +283,30 @@ def test_an_error_that_stays_at_the_edge_while_the_fault_acts_is_not_back() -> N
 
     assert told(error) == []
     assert told(np.where(ticks < 20_000, error, 0.02 * model)) == ["settled"]
+
+
+def test_a_winner_that_flickers_costs_no_look_at_its_residuals() -> None:
+    """On 5000 ticks with another winner at every third tick; the last of them may still win often enough."""
+    bench = get("ch5-seven-step").spec
+    looks: list[str] = []
+
+    class Counted:
+        first, end, began = 100, 5100, 0
+
+        def __contains__(self, name: object) -> bool:
+            return str(name).startswith("kalman.residual.")
+
+        def values(self, name: str, *_: int) -> Any:
+            looks.append(name)
+            return np.zeros(3)
+
+    (name,) = bench.diagnosers
+    verdicts = Verdicts(name, bench.diagnosers[name], 1, bench.dt_ms, alone=True)
+    ticks = [*range(100, 5100, 3)]
+    changes = {f"{name}.winner": Turns(ticks, [at % 2 + 1 for at in range(len(ticks))])}
+    verdicts._held = 0
+    assert [*verdicts.look(cast(NarratorSignals, Counted()), changes)] == []
+    assert len(looks) == 2
 
 
 class Traces(UserDict[str, Any]):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from core.board.commands import parse_command
+from core.board.condition import parse_condition
+from core.board.history import History
 from core.errors import InputError
 from scenarios.edit import with_values
 from scenarios.library import get
@@ -171,19 +173,59 @@ def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
     board = bench.board
     ran: list[int] = []
 
-    def slow(n: int) -> Any:
-        rows = type(board).advance(board, n)
-        ran.append(rows.count)
-        now[0] += rows.count * 2.0 ** (-16 if len(ran) != 3 else -9)
-        return rows
+    def slow(history: History, n: int) -> Any:
+        ticks = type(board).advance_into(board, history, n)
+        ran.append(ticks.count)
+        now[0] += ticks.count * 2.0 ** (-16 if len(ran) != 3 else -9)
+        return ticks
 
-    board.advance = slow  # type: ignore[method-assign]
+    board.advance_into = slow  # type: ignore[method-assign]
     bench.begin(not steps)
     if steps:
         step(bench, ticks=1600)
     for _ in range(5):
         bench.time.slice(None)
     assert ran == [512, 327, 327, 81, 327]
+
+
+class TakesAll:
+    """A recorder that keeps what it gets."""
+
+    id, is_open, reason = "one", True, "stopped"
+
+    def __init__(self) -> None:
+        self.began: list[int] = []
+        self.samples: dict[int, np.ndarray] = {}
+
+    def begin(self, past: Any, _ticks: int | None) -> None:
+        self.began.append(past.end)
+
+    def append(self, first: int, samples: np.ndarray) -> None:
+        self.samples |= {first + i: samples[:, i] for i in range(samples.shape[1])}
+
+    def note(self, *_: Any) -> None: ...
+
+    def stop(self, _reason: str) -> None: ...
+
+
+def test_a_recording_begins_where_its_condition_holds_before_numbers_are_rounded() -> None:
+    """In single precision this number is below the limit; later ticks are recorded as the history has them."""
+    bench, recorder = session(), TakesAll()
+    board = build(bench.scenario)
+    values = board.advance(400).outputs[:, board.signals.index("plant.displacement")]
+    tops = np.flatnonzero(values == np.maximum.accumulate(values))
+    tick = int(next(at for at in tops[5:] if np.float32(values[at]) < values[at]))
+    limit = np.nextafter(values[tick], -np.inf)
+    assert not np.float32(values[tick]) > limit
+    condition = parse_condition(f"plant.displacement > {float(limit)!r}", bench.column_of)
+    bench.recordings.begin(cast(Any, recorder), "edge", "test", 0, None, condition)
+    while bench.board.tick < 1000:
+        bench.advance(300)
+    found = [event.text for event in bench.events.after(0)[1] if event.kind == "recording_started"]
+    assert found == [f"a recording began: its condition held at tick {tick}"]
+    names = list(range(len(bench.signals)))
+    for at in range(bench.board.tick - 300, bench.board.tick):
+        np.testing.assert_array_equal(recorder.samples[at], bench.history.read(names, at, at + 1)[:, 0])
 
 
 def test_going_back_and_on_gives_the_same_bits_and_keeps_the_past() -> None:
