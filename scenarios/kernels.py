@@ -28,7 +28,8 @@ from scenarios.key import code_version
 from scenarios.library import get
 from scenarios.run import build
 
-HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference", "rate", "readout")
+HEAVY_FIRST = ("plant", "diagnose", "identify", "control", "sense", "board", "faults", "reference", "rate", "readout",
+               "supervise")  # fmt: skip
 """Families in the order of compilation, so that no core still has a long one at the end."""
 FIRST_BENCH = "first-look"
 NICE = 10

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from core.block import BlockParams, FloatArray
-from core.board import changes, fold, program, steps, words
+from core.board import changes, fold, program, steps, supervision, words
 from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
-from core.board.document import Document
+from core.board.document import SUPERVISOR, Document
 from core.board.fold import Words
 from core.board.instances import scored
 from core.board.log import Log, LogEntry
@@ -72,6 +72,7 @@ class Board:
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
+        self.consequences: list[tuple[int, Command]] = []  # what the supervisor did; no command to repeat
         self.pending = PendingQueue()
         self.trip: Trip | None = None
         self.lost: Lost | None = None
@@ -217,9 +218,12 @@ class Board:
             taps,
             folds,
             wiring.trip,
-            self.pending.watches(wiring.index),
+            self._watches(),
         )
         return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
+
+    def _watches(self) -> FloatArray:
+        return supervision.watched(self.spec, self.wiring, self.pending.watches(self.wiring.index))
 
     def link(self) -> None:
         """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
@@ -276,6 +280,7 @@ class Board:
         InputError
             When the command is not allowed; nothing has changed then.
         """
+        self.obey()
         moment = command.tick(self.dt_ms)
         if moment is not None and moment < self.tick:
             raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
@@ -290,8 +295,22 @@ class Board:
         self.pending.add(PendingCommand(command, actor, tick, condition, self.tick))
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
+    def obey(self) -> None:
+        """Carry out what the supervisor has requested, before any command at this tick; a tripped board does nothing.
+
+        It is a consequence of the samples, so it is no command that `save` or a track would repeat.
+        """
+        if not self.spec.supervisors or (requested := supervision.take_request(self.spec, self.wiring)) is None:
+            return
+        for command in requested.commands if self.trip is None else ():
+            try:
+                self._do(command, SUPERVISOR, requested.reason)
+            except InputError as error:
+                self.note(SUPERVISOR, "refused", f"{words.describe(command, self.spec.library)}: {error}")
+
     def apply_due(self) -> None:
         """Carry out the commands due at this tick, as the next advance would."""
+        self.obey()
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
@@ -303,10 +322,11 @@ class Board:
                     command=entry.command,
                 )
 
-    def _do(self, command: Command, actor: str) -> LogEntry:
+    def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry:
+        """Carry out a command, or a consequence, which has a reason."""
         old, new = changes.carry_out(self, command)
-        self.done.append((self.tick, command))
-        text = words.describe(command, self.spec.library)
+        (self.consequences if reason else self.done).append((self.tick, command))
+        text = words.describe(command, self.spec.library) + (f": {reason}" if reason else "")
         return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 
     # -- log
@@ -345,7 +365,8 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy(), "done": list(self.done)})
+        lists = {"log": self.log.copy(), "done": list(self.done), "consequences": list(self.consequences)}
+        return Checkpoint(self.tick, type(self), {**kept, **shared, **lists})
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:
@@ -358,7 +379,7 @@ class Board:
 
     def _revive(self) -> None:
         """Make the parts that copies do not share."""
-        self.log, self.done = self.log.copy(), list(self.done)
+        self.log, self.done, self.consequences = self.log.copy(), list(self.done), list(self.consequences)
         self._linked = None
         self._allocate()
         self.link()

@@ -108,10 +108,10 @@ class Hosted(Board):
         """Refuse: a part that runs outside cannot be copied."""
         raise InputError("cannot be copied: part of it runs outside", "board")
 
-    def _do(self, command: Command, actor: str) -> LogEntry:
+    def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry:
         law = self._law
         ran_away = law is not None and not math.isfinite(law.answered[0])
-        entry = super()._do(command, actor)
+        entry = super()._do(command, actor, reason)
         if law is not None and isinstance(command, Switch) and command.switch == law.key:
             law.begins |= command.cold or ran_away
         if isinstance(command, ResetTrip):
@@ -153,7 +153,7 @@ class Hosted(Board):
 
     def _run(self, n: int, at: int) -> tuple[int, int]:
         wiring, cut = self.wiring, self._cut
-        watches = self.pending.watches(wiring.index)
+        watches = self._watches()
         for i in range(n):
             tick = self.tick + i
             self._begin(tick)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from core.board.board import Board
+from core.board.document import SUPERVISOR
 from core.board.ensemble import Ensemble
 from core.board.pending import PendingQueue
 from core.board.wiring import needed
@@ -32,7 +33,7 @@ def looking_on(board: Board) -> set[str]:
 def idle_controllers(board: Board, pending: PendingQueue) -> set[str]:
     """Return the controllers that drive neither now nor by a command that waits, and that nothing else reads."""
     spec, wiring = board.spec, board.wiring
-    idle = {*spec.controllers} - {*spec.driving.values()} - _named(pending)
+    idle = {*spec.controllers} - {*spec.driving.values()} - _named(pending) - _words(spec.document.get(SUPERVISOR, ""))
     places = {wiring.index[signal.name]: signal.block for signal in wiring.signals if signal.block in idle}
     for row, instance in enumerate(wiring.instances):
         if instance.key not in idle:
@@ -43,4 +44,8 @@ def idle_controllers(board: Board, pending: PendingQueue) -> set[str]:
 
 def _named(pending: PendingQueue) -> set[str]:
     """Return all words of the commands that wait, their conditions included."""
-    return {word for entry in pending for word in re.findall(r"\w+", str(entry.command.document()))}
+    return _words([entry.command.document() for entry in pending])
+
+
+def _words(said: object) -> set[str]:
+    return {*re.findall(r"\w+", str(said))}

@@ -78,6 +78,7 @@ def instances(spec: Spec) -> list[Instance]:
         order.append(_waiting(spec, name, section))
         if scored(section.block):
             order.append(_scoring(spec, name, section))
+    order += [_usual(name, section) for name, section in spec.supervisors.items()]
     if spec.axes:
         order += [_usual(name, section) for name, section in spec.generators.items()]
     else:

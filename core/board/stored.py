@@ -78,6 +78,7 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
     document = {
         "tick": board.tick,
         "done": [[tick, command.document()] for tick, command in board.done],
+        "consequences": [[tick, command.document()] for tick, command in board.consequences],
         "pending": [_waiting(entry) for entry in board.pending],
         "asked": board.pending.asked,
         "lost": board.lost,
@@ -91,13 +92,16 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
 
 def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
     """Carry out the stored commands on a board at tick 0, then give it the stored numbers."""
-    for tick, command in document["done"]:
+    both = ((board.consequences, document.get("consequences", [])), (board.done, document["done"]))
+    # a consequence comes before the commands of its tick
+    every = [(tick, command, kept) for kept, commands in both for tick, command in commands]
+    for tick, command, kept in sorted(every, key=lambda one: int(one[0])):
         parsed = parse_command(command)
         board.tick = tick
         if parsed.kind == "reset_trip":  # only a board that has tripped takes it; here no tick has run
             board.trip = Trip(tick=tick, time_ms=0.0, reason="", signal="", value=None)
         changes.carry_out(board, parsed)
-        board.done.append((tick, parsed))
+        kept.append((tick, parsed))
     board.tick, board.used = document["tick"], set(document["used"])
     board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
     board.lost = Lost(*document["lost"]) if document.get("lost") else None

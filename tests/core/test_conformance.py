@@ -24,7 +24,7 @@ TICKS = 120
 SECTION = {"reference": "reference", "plant": "plant", "sense": "sensor", "control": "controller"}
 KIND = {"plant": "model"}
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
-ENDS = ("not a finite", "touched", "shorted")
+ENDS = ("not a finite", "touched", "shorted", "the supervisor")
 PROFILES = (
     {"kind": "step"},
     {"kind": "ramp", "duration_ms": 0.7},
@@ -55,6 +55,8 @@ def path_of(entry: type[Block]) -> str:
         return "diagnosers.kalman"
     if entry.family == "identify":
         return "identifiers.own"
+    if entry.family == "supervise":
+        return "supervisor"
     if entry.family == "board":
         return entry.name
     if entry.family == "sense":
@@ -78,6 +80,8 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         return {SECTION[entry.family]: table}
     if entry.family == "identify":
         return {"identifiers.own.kind": entry.name}
+    if entry.family == "supervise":  # so soon that it acts within the run
+        return {"supervisor": {"kind": entry.name, "hold_ms": 0.05, "dead_ms": 0.1}}
     if entry.family == "diagnose":
         if "hypotheses" not in entry.Params.model_fields:
             return {"diagnosers": {"kalman": {"kind": entry.name}, "slow": {"kind": entry.name, "every": 2}}}
@@ -300,7 +304,7 @@ def test_a_parameter_at_its_limit_is_refused_or_runs(name):
 def at_its_limit(entry: type[Block], name: str, value: float) -> None:
     label = f"{name_of(entry)}.{name}={value:g}"
     values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
-    bench = rich(entry) if entry.family == "diagnose" else {**rich(entry), "diagnosers": {}}
+    bench = rich(entry) if entry.family in ("diagnose", "supervise") else {**rich(entry), "diagnosers": {}}
     try:
         board = make(values, base=bench)
     except InputError as error:
