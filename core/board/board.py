@@ -24,6 +24,7 @@ from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
 from core.board.segments import SharedSegment, TablePart, joined, parts
 from core.board.spec import Section, Spec
+from core.board.supervision import Consequence
 from core.board.wiring import Wiring, wire
 from core.diagnose.hypothesis import names_of
 from core.errors import InputError
@@ -72,7 +73,7 @@ class Board:
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
-        self.consequences: list[tuple[int, Command]] = []  # what the supervisor did; no command to repeat
+        self.consequences: list[Consequence] = []  # what the supervisor did; no command to repeat
         self.pending = PendingQueue()
         self.trip: Trip | None = None
         self.lost: Lost | None = None
@@ -325,7 +326,10 @@ class Board:
     def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry:
         """Carry out a command, or a consequence, which has a reason."""
         old, new = changes.carry_out(self, command)
-        (self.consequences if reason else self.done).append((self.tick, command))
+        if reason:
+            self.consequences.append(Consequence(self.tick, command, reason))
+        else:
+            self.done.append((self.tick, command))
         text = words.describe(command, self.spec.library) + (f": {reason}" if reason else "")
         return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 

@@ -21,6 +21,14 @@ from core.errors import InputError
 REQUEST = f"{SUPERVISOR}.request"
 
 
+class Consequence(NamedTuple):
+    """An act that was carried out at a tick edge, and why."""
+
+    tick: int
+    command: Command
+    reason: str
+
+
 class Requested(NamedTuple):
     """The commands of a request, and its reason in words."""
 

@@ -16,6 +16,8 @@ from core.record import Record, Vector, vector
 from core.supervise.supervisor import Act, Supervisor, SupervisorPorts, Value
 from core.supervise.verdict import WaitingPacked, WaitingParams, hypotheses, take_waiting, ticks
 
+DIGITS = 4
+"""Decimals of a factor that is set."""
 PARTS = tuple(name.removesuffix("_ratio") for name in RATIOS)
 
 
@@ -165,14 +167,8 @@ class Retuning(Supervisor):
             return (
                 [{"make_safe": "the supervisor found no hypothesis that fits"}] if params.on_unknown == "safe" else []
             )
-        return [
-            {
-                "set": {
-                    f"controllers.{params.controller}.{part}_ratio": value(f"supervisor.estimate.{part}")
-                    for part in PARTS
-                }
-            }
-        ]
+        estimate = {part: round(value(f"supervisor.estimate.{part}"), DIGITS) for part in PARTS}
+        return [{"set": {f"controllers.{params.controller}.{part}_ratio": ratio for part, ratio in estimate.items()}}]
 
     @classmethod
     def reason(cls, params: Any, context: Context, request: int, value: Value) -> str:

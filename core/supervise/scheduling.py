@@ -12,7 +12,7 @@ from core.supervise.supervisor import MOST_ACTS, Act
 from core.supervise.verdict import VerdictParams, VerdictSupervisor, check_names, nominal
 
 
-class Row(BlockParams):
+class ScheduleRow(BlockParams):
     """The values of a hypothesis."""
 
     name: str = Field(min_length=1, max_length=24, description="name of the hypothesis")
@@ -31,7 +31,7 @@ class Scheduling(VerdictSupervisor):
     class Params(VerdictParams):
         """The table."""
 
-        schedule: list[Row] = Field(
+        schedule: list[ScheduleRow] = Field(
             [],
             max_length=MOST_ACTS,
             description="values of each hypothesis; a hypothesis without a row has the values of the healthy device",

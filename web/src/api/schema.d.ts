@@ -3397,6 +3397,8 @@ export interface components {
             /** @description The change that redo makes again */
             redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
+            /** @description The supervisor, if the bench has one */
+            supervisor?: components["schemas"]["SupervisorStatus"] | null;
             /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
@@ -8423,6 +8425,57 @@ export interface components {
             hidden: components["schemas"]["Fact"][];
         };
         /**
+         * SupervisorAct
+         * @description An act of the supervisor.
+         */
+        SupervisorAct: {
+            /** Tick */
+            tick: number;
+            /**
+             * Text
+             * @description What it did, in words
+             */
+            text: string;
+            /** Reason */
+            reason: string;
+        };
+        /**
+         * SupervisorStatus
+         * @description The supervisor now: what it has concluded, and what it did.
+         */
+        SupervisorStatus: {
+            /** Kind */
+            kind: string;
+            /** Diagnoser */
+            diagnoser: string;
+            /**
+             * Verdict
+             * @description Hypothesis that the weights name now; 'none fits', or empty without a verdict
+             */
+            verdict: string;
+            /**
+             * Acting
+             * @description Verdict that was acted on last, in the same words
+             */
+            acting: string;
+            /**
+             * Held Ms
+             * @description Time for which the verdict has lasted; null: it has no verdict
+             */
+            held_ms: number | null;
+            /**
+             * Dead Ms
+             * @description Time left in which nothing counts; null: it has no such time
+             */
+            dead_ms: number | null;
+            /**
+             * Acts
+             * @description Acts so far
+             */
+            acts: number;
+            last_act: components["schemas"]["SupervisorAct"] | null;
+        };
+        /**
          * SweepList
          * @description Campaigns, newest first.
          */
@@ -9607,6 +9660,11 @@ export interface components {
             redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
             /**
+             * @description The supervisor, if the bench has one
+             * @default null
+             */
+            supervisor?: components["schemas"]["SupervisorStatus"] | null;
+            /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
              */
@@ -9855,6 +9913,26 @@ export interface components {
              * @enum {string}
              */
             kind: "adrc";
+            /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
             /**
              * @description omega_c over w0
              * @default 1
@@ -10591,7 +10669,7 @@ export interface components {
             every?: number;
         };
         /** Controller */
-        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
+        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["MultipleModelController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
         /**
          * CusumDiagnoser
          * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis.
@@ -12189,6 +12267,26 @@ export interface components {
              */
             kind: "lqg";
             /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
+            /**
              * @description root of the cost of a volt, µm/V
              * @default 0.03
              */
@@ -12673,6 +12771,45 @@ export interface components {
             every?: number;
         };
         /**
+         * MultipleModelController
+         * @description Multiple models (MMAC): An LQG for each hypothesis of a diagnoser, `u=\sum_ip_iu_i`, or the law of the winner (Athans 1977).
+         */
+        MultipleModelController: {
+            /**
+             * @description Multiple models (MMAC): An LQG for each hypothesis of a diagnoser, `u=\sum_ip_iu_i`, or the law of the winner (Athans 1977). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "multiple_model";
+            /**
+             * @description root of the cost of a volt, µm/V
+             * @default 0.03
+             */
+            voltage_cost_um_v?: number;
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 1
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description diagnoser whose weights count, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description all laws by their weights, or the law of the winner
+             * @default blend
+             * @enum {string}
+             */
+            combine?: "blend" | "switch";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * NoiseRate
          * @description Constant rate with noise: Constant rate with noise of the tactical grade, `\Omega(t)=\Omega_0+\Omega_n`.
          */
@@ -12855,6 +12992,11 @@ export interface components {
              */
             periods?: number;
         };
+        /**
+         * OwnBlock
+         * @description A block of a unit of your own, whose parameters its text declares.
+         */
+        OwnBlock: Record<string, never>;
         /**
          * OwnUnit
          * @description A unit of your own.
@@ -13854,6 +13996,26 @@ export interface components {
              */
             kind: "resonant";
             /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
+            /**
              * @description harmonics of the tone
              * @default 1
              */
@@ -13863,6 +14025,53 @@ export interface components {
              * @default 0.2
              */
             rate?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * RetuningSupervisor
+         * @description Retune the model: Sets the device that a controller knows to the weighted estimate, `\hat\theta=\sum_i\bar p_i\theta_i`.
+         */
+        RetuningSupervisor: {
+            /**
+             * @description Retune the model: Sets the device that a controller knows to the weighted estimate, `\hat\theta=\sum_i\bar p_i\theta_i`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "retuning";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description controller whose model is set
+             * @default lqg
+             */
+            controller?: string;
+            /**
+             * @description change of a factor that is worth a request
+             * @default 0.02
+             */
+            least_change?: number;
+            /**
+             * @description act while no hypothesis fits: hold sets nothing, follow sets the estimate all the same, safe trips
+             * @default follow
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "follow" | "safe";
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -13994,6 +14203,8 @@ export interface components {
             diagnosers?: {
                 [key: string]: components["schemas"]["Diagnoser"];
             };
+            /** @description the supervisor, which acts on the verdict of a diagnoser */
+            supervisor?: components["schemas"]["SupervisorTable"] | components["schemas"]["OwnBlock"];
             /** @description read-outs of a gyroscope, each under a name of your own */
             readouts?: {
                 [key: string]: components["schemas"]["ReadOut"];
@@ -14059,6 +14270,70 @@ export interface components {
          * @description An id of the library.
          */
         ScenarioId: string;
+        /**
+         * ScheduleRow
+         * @description The values of a hypothesis.
+         */
+        ScheduleRow: {
+            /** @description name of the hypothesis */
+            name: string;
+            /** @description values by dotted path */
+            set: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * SchedulingSupervisor
+         * @description Schedule parameters: Sets the parameters that the table has for the hypothesis that the diagnoser names: scheduled gains.
+         */
+        SchedulingSupervisor: {
+            /**
+             * @description Schedule parameters: Sets the parameters that the table has for the hypothesis that the diagnoser names: scheduled gains. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "scheduling";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description values of each hypothesis; a hypothesis without a row has the values of the healthy device
+             * @default []
+             */
+            schedule?: components["schemas"]["ScheduleRow"][];
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
         /**
          * Seeds
          * @description Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
@@ -14341,6 +14616,53 @@ export interface components {
         };
         /** Sensor */
         Sensor: components["schemas"]["CapacitiveSensor"] | components["schemas"]["IdealSensor"] | components["schemas"]["PeakValleySensor"] | components["schemas"]["PickOffSensor"] | components["schemas"]["QuadratureSensor"] | components["schemas"]["QuadratureKalmanSensor"] | components["schemas"]["SingleBeamSensor"];
+        /**
+         * ShutdownSupervisor
+         * @description Shut down: Takes the outputs to their safe values, as a trip does, once the diagnoser names a fault (5.1.5: safe to fail).
+         */
+        ShutdownSupervisor: {
+            /**
+             * @description Shut down: Takes the outputs to their safe values, as a trip does, once the diagnoser names a fault (5.1.5: safe to fail). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "shutdown";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
         /**
          * SineRate
          * @description Sine of the rate: Rate that swings, `\Omega(t)=\Omega_0\sin(2\pi ft+\varphi)`.
@@ -14785,6 +15107,10 @@ export interface components {
              */
             every?: number;
         };
+        /** Supervisor */
+        Supervisor: components["schemas"]["RetuningSupervisor"] | components["schemas"]["SchedulingSupervisor"] | components["schemas"]["ShutdownSupervisor"] | components["schemas"]["SwitchingSupervisor"];
+        /** SupervisorTable */
+        SupervisorTable: components["schemas"]["Supervisor"];
         /**
          * SweepVariant
          * @description One of several alternatives, such as a controller or a set of diagnosers.
@@ -14831,6 +15157,65 @@ export interface components {
             start_hz?: number | null;
             /** @description highest tone; twice the resonance unless given, Hz */
             stop_hz?: number | null;
+        };
+        /**
+         * SwitchingSupervisor
+         * @description Switch the controller: Switches to the controller of the hypothesis that the diagnoser names (5.1.6: diagnosis, then redesign).
+         */
+        SwitchingSupervisor: {
+            /**
+             * @description Switch the controller: Switches to the controller of the hypothesis that the diagnoser names (5.1.6: diagnosis, then redesign). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "switching";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description controller of every hypothesis without one of its own
+             * @default lqg
+             */
+            nominal?: string;
+            /**
+             * @description controllers, by hypothesis
+             * @default {}
+             */
+            controllers?: {
+                [key: string]: string;
+            };
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
         };
         /**
          * Tone
@@ -15399,6 +15784,8 @@ export type StepGrade = components['schemas']['StepGrade'];
 export type StepPeriod = components['schemas']['StepPeriod'];
 export type StepView = components['schemas']['StepView'];
 export type StudentGame = components['schemas']['StudentGame'];
+export type SupervisorAct = components['schemas']['SupervisorAct'];
+export type SupervisorStatus = components['schemas']['SupervisorStatus'];
 export type SweepList = components['schemas']['SweepList'];
 export type SweepPoints = components['schemas']['SweepPoints'];
 export type SweepRun = components['schemas']['SweepRun'];
@@ -15519,11 +15906,13 @@ export type MovingBankDiagnoser = components['schemas']['MovingBankDiagnoser'];
 export type MracController = components['schemas']['MracController'];
 export type MracVelocityController = components['schemas']['MracVelocityController'];
 export type MultiSineReference = components['schemas']['MultiSineReference'];
+export type MultipleModelController = components['schemas']['MultipleModelController'];
 export type NoiseRate = components['schemas']['NoiseRate'];
 export type NonlinearPlant = components['schemas']['NonlinearPlant'];
 export type OpenLoopController = components['schemas']['OpenLoopController'];
 export type OpenLoopRateController = components['schemas']['OpenLoopRateController'];
 export type OutputsStudy = components['schemas']['OutputsStudy'];
+export type OwnBlock = components['schemas']['OwnBlock'];
 export type OwnUnit = components['schemas']['OwnUnit'];
 export type PackageEntry = components['schemas']['PackageEntry'];
 export type PeakValleySensor = components['schemas']['PeakValleySensor'];
@@ -15553,15 +15942,19 @@ export type ReferenceBanksDiagnoser = components['schemas']['ReferenceBanksDiagn
 export type RegionsDiagnoser = components['schemas']['RegionsDiagnoser'];
 export type ReseedDiagnoser = components['schemas']['ReseedDiagnoser'];
 export type ResonantController = components['schemas']['ResonantController'];
+export type RetuningSupervisor = components['schemas']['RetuningSupervisor'];
 export type Scenario = components['schemas']['Scenario'];
 export type ScenarioEvent = components['schemas']['ScenarioEvent'];
 export type ScenarioId = components['schemas']['ScenarioId'];
+export type ScheduleRow = components['schemas']['ScheduleRow'];
+export type SchedulingSupervisor = components['schemas']['SchedulingSupervisor'];
 export type Seeds = components['schemas']['Seeds'];
 export type SelfSlidingController = components['schemas']['SelfSlidingController'];
 export type SelfTuningDiagnoser = components['schemas']['SelfTuningDiagnoser'];
 export type SenseAxisSyncController = components['schemas']['SenseAxisSyncController'];
 export type SensingStudy = components['schemas']['SensingStudy'];
 export type Sensor = components['schemas']['Sensor'];
+export type ShutdownSupervisor = components['schemas']['ShutdownSupervisor'];
 export type SineRate = components['schemas']['SineRate'];
 export type SineReference = components['schemas']['SineReference'];
 export type SingleBeamSensor = components['schemas']['SingleBeamSensor'];
@@ -15572,8 +15965,11 @@ export type StepReference = components['schemas']['StepReference'];
 export type Stretch = components['schemas']['Stretch'];
 export type Study = components['schemas']['Study'];
 export type StvscController = components['schemas']['StvscController'];
+export type Supervisor = components['schemas']['Supervisor'];
+export type SupervisorTable = components['schemas']['SupervisorTable'];
 export type SweepVariant = components['schemas']['SweepVariant'];
 export type SweptSineStudy = components['schemas']['SweptSineStudy'];
+export type SwitchingSupervisor = components['schemas']['SwitchingSupervisor'];
 export type Tone = components['schemas']['Tone'];
 export type TransferFunction = components['schemas']['TransferFunction'];
 export type TransferFunctionPlant = components['schemas']['TransferFunctionPlant'];
