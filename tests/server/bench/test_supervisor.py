@@ -140,5 +140,5 @@ def test_its_parameters_are_set_live_and_from_outside(live: Any) -> None:
 
 def test_no_fault_is_hidden_where_its_acts_would_tell(live: Any) -> None:
     bench = live.bench(bench_document(), paused=True)
-    answer = live.http.post(f"/api/v1/benches/{bench['id']}/blind", json={})
+    answer = live.http.post(f"/api/v1/benches/{bench['id']}/blind", json={"seed": 1})
     assert answer.status_code == 422 and "supervisor" in answer.text
