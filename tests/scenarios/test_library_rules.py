@@ -99,7 +99,8 @@ def test_a_claim_beyond_the_text_is_ours():
 
 def test_titles_count_what_is_on_the_bench():
     numbers = {
-        word: n for n, word in enumerate("two three four five six seven eight nine ten eleven twelve thirteen".split(), 2)
+        word: n
+        for n, word in enumerate("two three four five six seven eight nine ten eleven twelve thirteen".split(), 2)
     }
     counted = []
     for scenario in library():

@@ -5,8 +5,10 @@ from __future__ import annotations
 import copy
 from typing import Any
 
+import numpy as np
 import pytest
 
+from core.errors import InputError
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
@@ -44,3 +46,23 @@ def test_a_supervisor_that_holds_leaves_every_bit_of_the_loop() -> None:
     result = run(get("ch5-wrong-verdict"), taps=True)
     for signal in ("plant.displacement", "drive.voltage"):
         assert result.signal(signal).tobytes() == result.signal(f"holding:{signal}").tobytes()
+
+
+def test_the_table_of_laws_is_of_a_bench_with_a_supervisor() -> None:
+    document = {key: value for key, value in get("ch5-tolerance-table").document.items() if key != "supervisor"}
+    with pytest.raises(InputError, match="no supervisor"):
+        run(Scenario.load(document))
+
+
+def test_the_ratio_of_the_table_is_the_ratio_of_two_runs() -> None:
+    table = get("ch5-tolerance-table").document
+    short = {"study": {"kind": "fault_tolerance", "runs": 1, "samples": 1600}}
+    found = run(Scenario.load({**table, **short, "expect": []})).metrics["tolerance.supervised.stiffness.100"]
+    alone = {key: value for key, value in table.items() if key not in ("study", "expect")}
+    alone |= {"samples": 1600, "events": [{"at_sample": 400, "fault": "stiffness", "severity": 0.1}]}
+    errors = []
+    for document in (alone, {key: value for key, value in alone.items() if key != "supervisor"}):
+        result = run(Scenario.load(document))
+        error = result.signal("plant.displacement") - result.signal("model.displacement")
+        errors.append(np.sqrt(np.mean(np.square(error[1000:]))))
+    assert found == pytest.approx(errors[0] / errors[1], rel=1e-12)
