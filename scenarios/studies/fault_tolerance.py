@@ -1,4 +1,4 @@
-"""Law by fault by severity: the error that a supervised loop, a fixed PID and an MRAC leave of the fixed law's error."""
+"""Law by fault by severity: the errors of a supervised loop, a fixed PID and an MRAC over the error of a fixed law."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def test_a_run_its_scenario_and_plain_python_are_one_run(kind: str) -> None:
     play(board, TICKS)
     assert board.consequences and len(acts(board)) == len(board.consequences)
     told = {str(command) for _, command in board.done}
-    assert not told & {str(command) for _, command in board.consequences}
+    assert not told & {str(command) for _, command, _ in board.consequences}
     saved = board.save()
     again = make({}, saved["events"], base={key: saved[key] for key in saved if key not in ("events", "samples")})
     play(again, TICKS)
@@ -110,7 +110,7 @@ def test_the_tick_of_a_request_is_no_place_where_an_act_is_lost_or_done_twice() 
     assert board.value("supervisor.request") > 0.0 and not board.consequences
     kept = board.checkpoint()
     board.apply_due()
-    assert [tick for tick, _ in board.consequences] == [edge] and board.value("supervisor.request") == 0.0
+    assert [tick for tick, *_ in board.consequences] == [edge] and board.value("supervisor.request") == 0.0
     after, data = board.checkpoint(), stored(board)
     for other in (board, Board.restore(kept), Board.restore(after), revived(data)):
         play(other, TICKS - other.tick)
@@ -169,7 +169,7 @@ def test_a_fault_that_no_hypothesis_describes(way: str, kinds: list[str]) -> Non
     base["supervisor"]["threshold"] = 1.0  # no weight is a verdict
     board = make({}, [{"fault": "stiffness", "severity": 0.4, "at_sample": 300}], base=base)
     play(board, 900)
-    assert [command.kind for _, command in board.consequences] == kinds
+    assert [command.kind for _, command, _ in board.consequences] == kinds
     assert (board.trip is not None) == (way == "safe")
 
 
@@ -234,7 +234,7 @@ def test_a_unit_supervises_in_machine_code_and_behind_the_wall(walled: bool) -> 
     base = {**bench(), "supervisor": table, "units": {"mine": {"source": UNIT}}}
     native = make({}, STORY[:1], base=base)
     play(native, 600)
-    assert [command.switch for _, command in native.consequences] == ["pid"]
+    assert [command.switch for _, command, _ in native.consequences] == ["pid"]
     wall.demand(walled)
     try:
         other = make({}, STORY[:1], base=base)
