@@ -73,7 +73,7 @@ class Board:
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
-        self.consequences: list[Consequence] = []  # what the supervisor did; no command to repeat
+        self.consequences: list[Consequence] = []  # acts of the supervisor; a replay derives them
         self.pending = PendingQueue()
         self.trip: Trip | None = None
         self.lost: Lost | None = None
@@ -297,7 +297,7 @@ class Board:
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
     def obey(self) -> None:
-        """Carry out what the supervisor has requested, before any command at this tick; a tripped board does nothing.
+        """Carry out the request of the supervisor, before any command at this tick; a tripped board does nothing.
 
         It is a consequence of the samples, so it is no command that `save` or a track would repeat.
         """

@@ -1,6 +1,6 @@
 """Supervision: the act that a supervisor requests, as commands to its board.
 
-A request is a signal, so it is copied, stored and computed again with all others. Nothing else says what is to be done.
+A request is a signal, so it is copied, stored and computed again with all others. A board keeps no other note of it.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ class SupervisorParams(BlockParams):
 
 
 class ActParams(SupervisorParams):
-    """The acts that a supervisor of one's own may request."""
+    """The acts that a user's supervisor may request."""
 
     acts: list[Act] = Field(
         [],

@@ -103,7 +103,7 @@ class SupervisorAct(BaseModel):
 
 
 class SupervisorStatus(BaseModel):
-    """The supervisor now: what it has concluded, and what it did."""
+    """The supervisor now: its verdict, and its last act."""
 
     kind: str
     diagnoser: str
