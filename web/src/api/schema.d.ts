@@ -8441,7 +8441,7 @@ export interface components {
         };
         /**
          * SupervisorStatus
-         * @description The supervisor now: what it has concluded, and what it did.
+         * @description The supervisor now: its verdict, and its last act.
          */
         SupervisorStatus: {
             /** Kind */
@@ -11072,6 +11072,37 @@ export interface components {
              * @default
              */
             note?: string;
+        };
+        /**
+         * FaultToleranceStudy
+         * @description Fault tolerance of laws
+         */
+        FaultToleranceStudy: {
+            /**
+             * @description Fault tolerance of laws (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "fault_tolerance";
+            /**
+             * @description length of a run; the fault comes after a quarter
+             * @default 2400
+             */
+            samples?: number;
+            /**
+             * @description seeds of each case, starting at the seed of the bench
+             * @default 1
+             */
+            runs?: number;
+            /**
+             * @description pole of the PID over w0
+             * @default 1.3
+             */
+            pole?: number;
+            /**
+             * @description feed-forward of the PID
+             * @default 1
+             */
+            feedforward?: number;
         };
         /**
          * FlopsStudy
@@ -14142,6 +14173,7 @@ export interface components {
              * @default {
              *       "since_ms": 0,
              *       "tail_share": 0.25,
+             *       "steps": false,
              *       "beside": ""
              *     }
              */
@@ -15026,13 +15058,18 @@ export interface components {
              */
             tail_share?: number;
             /**
+             * @description errors of each step between faults, and the times to recover from them
+             * @default false
+             */
+            steps?: boolean;
+            /**
              * @description diagnoser over whose delays the delays of others are taken
              * @default
              */
             beside?: string;
         };
         /** Study */
-        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
+        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FaultToleranceStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
         /**
          * StvscController
          * @description Self-tuning VSC: Self-tuning variable structure control, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
@@ -15873,6 +15910,7 @@ export type Environment = components['schemas']['Environment'];
 export type EstimatesStudy = components['schemas']['EstimatesStudy'];
 export type ExcitationIdentifier = components['schemas']['ExcitationIdentifier'];
 export type Expectation = components['schemas']['Expectation'];
+export type FaultToleranceStudy = components['schemas']['FaultToleranceStudy'];
 export type FlopsStudy = components['schemas']['FlopsStudy'];
 export type ForceToRebalanceController = components['schemas']['ForceToRebalanceController'];
 export type FreeBanksDiagnoser = components['schemas']['FreeBanksDiagnoser'];
