@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from core.board.live import value_at
 from core.errors import InputError
 from scenarios.run import build, run
 from scenarios.schema import Scenario
@@ -94,18 +95,19 @@ def test_a_change_that_it_has_changed_since_is_not_taken_back() -> None:
 
 
 def test_values_before_a_command_at_the_tick_of_an_act_are_the_values_after_the_act() -> None:
-    probe = supervised(controllers={"m+5": "pid"})
+    probe = supervised("scheduling")
     advance(probe, 500)
     do(probe, FAULT)
     advance(probe, 1000)
-    edge = acts(probe)[0].tick
-    bench = supervised(controllers={"m+5": "pid"})
+    edge, path = acts(probe)[0].tick, "controllers.lqg.mass_ratio"
+    bench = supervised("scheduling")
     advance(bench, 500)
     do(bench, FAULT)
     advance(bench, edge)
-    do(bench, {"switch": "adrc"})
+    do(bench, {"set": {path: 1.2}})
+    assert value_at(bench.board.spec, path) == 1.2 and [event.tick for event in acts(bench)] == [edge]
     do(bench, {"kind": "undo"})
-    assert bench.board.spec.active == "pid" and [event.tick for event in acts(bench)] == [edge]
+    assert value_at(bench.board.spec, path) == 1.05
 
 
 def test_safe_outputs_are_left_by_a_reset_and_come_again_while_the_fault_acts() -> None:
