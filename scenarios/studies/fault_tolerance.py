@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from core.block import BlockParams, parameter
+from core.block import BlockParams, FloatArray, parameter
 from core.board.commands import Inject
 from core.board.document import SUPERVISOR, Document, with_values
 from core.errors import InputError
+from scenarios.measure.errors import rms
 from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def _law(document: Document, table: Document) -> Document:
 
 def _error(board: Board, document: Document, fault: str, severity: float, params: Any) -> float:
     """Return the rms error of all runs in the second half of the time after the fault; no number after a trip."""
-    squares, count = 0.0, 0
+    errors: list[FloatArray] = []
     begins = params.samples // 4
     for run in range(params.runs):
         one = type(board)({**document, "seed": board.spec.seed + run})
@@ -95,8 +96,7 @@ def _error(board: Board, document: Document, fault: str, severity: float, params
         place, wanted = (one.signals.index(name) for name in ("plant.displacement", "model.displacement"))
         while one.tick < params.samples and (rows := one.advance(min(BLOCKS, params.samples - one.tick))).count:
             late = max(0, (begins + params.samples) // 2 - rows.first_tick)
-            errors = rows.outputs[late:, place] - rows.outputs[late:, wanted]
-            squares, count = squares + float(errors @ errors), count + len(errors)
+            errors.append(rows.outputs[late:, place] - rows.outputs[late:, wanted])
         if one.trip is not None:
             return float("nan")
-    return float(np.sqrt(squares / count))
+    return rms(np.concatenate(errors))
