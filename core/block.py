@@ -149,6 +149,8 @@ class Context:
         Frequency of the reference, 0 if it has none.
     sensors : mapping of str to BlockParams
         Parameters of every sensor, as a calibration would give them.
+    banks : mapping of str to mapping of str to Oscillator
+        The devices that each diagnoser chooses between, by the names of its hypotheses.
     """
 
     dt_ms: float
@@ -168,6 +170,7 @@ class Context:
     axis: str = ""
     tone_hz: float = 0.0
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
+    banks: Mapping[str, Mapping[str, Oscillator]] = field(default_factory=dict)
 
     @property
     def assumed_noise_um(self) -> float:

@@ -221,6 +221,8 @@ def _type(annotation: Any) -> tuple[str, list[str]]:
         return "choice", [str(choice) for choice in get_args(annotation)]
     if get_origin(annotation) is list:
         return "list", []
+    if get_origin(annotation) is dict:
+        return "table", []
     options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
     simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
     for option in options:

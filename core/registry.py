@@ -12,7 +12,19 @@ from core.block import LOOP, Block
 from core.cards import BlockCard, card, check_structure, is_live
 from core.errors import InputError, unknown
 
-FAMILIES = ("reference", "rate", "plant", "sense", "control", "identify", "diagnose", "readout", "faults", LOOP)
+FAMILIES = (
+    "reference",
+    "rate",
+    "plant",
+    "sense",
+    "control",
+    "identify",
+    "diagnose",
+    "supervise",
+    "readout",
+    "faults",
+    LOOP,
+)
 
 
 @cache
@@ -125,6 +137,7 @@ def block(family: str, name: object, field: str = "") -> type[Block]:
             "control": "controller",
             "identify": "identifier",
             "diagnose": "diagnoser",
+            "supervise": "supervisor",
             "readout": "read-out",
             "faults": "fault",
         }

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 
+from core.board import supervision
 from core.board.changes import check
 from core.board.commands import LONGEST_MS, Command, Switch, parse_event
 from core.board.condition import parse_condition
@@ -108,6 +109,7 @@ class Scenario:
         self._check_length()
         if (beside := self.head.metrics.beside) and beside not in self.spec.diagnosers:
             raise unknown("diagnoser", beside, self.spec.diagnosers, "metrics.beside")
+        supervision.check(self.spec)
         self.twins = twin_specs(self.bench)
         self.study = parse_study(self.head.study) if self.head.study is not None else None
         self.events: list[list[Command]] = like.events if like is not None and is_alike else []

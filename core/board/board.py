@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 
 from core.block import BlockParams, BoolArray, FloatArray
-from core.board import changes, fold, kept, program, steps, words
+from core.board import changes, fold, kept, program, supervision, words
 from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
-from core.board.document import Document
+from core.board.document import SUPERVISOR, Document
 from core.board.fold import Words
 from core.board.history import History
-from core.board.instances import scored
 from core.board.kept import KeptTicks
 from core.board.log import Log, LogEntry
 from core.board.lost import EVERY, Lost, lost, next_look
@@ -24,20 +23,20 @@ from core.board.observer import Finding, Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
 from core.board.rows import Rows
-from core.board.segments import SharedSegment, TablePart, joined, parts
+from core.board.scoring import scores
+from core.board.segments import SharedSegment
 from core.board.spec import Section, Spec
+from core.board.supervision import Consequence
+from core.board.walk import Walk
 from core.board.wiring import Wiring, wire
-from core.diagnose.hypothesis import names_of
 from core.errors import InputError
-from core.loop import score
+from core.loop.score import Scores
 from core.plant.record import supply
 from core.ports import RESERVED
 from core.signals import SignalTable
 
 CHUNK = 512
 """Most ticks of one call of ``advance``."""
-
-
 COPIED = ("pending", "trip", "wiring", "folds", "used", "observer")
 LISTS = 150
 """Bytes that a checkpoint takes for each block beside its numbers."""
@@ -78,17 +77,14 @@ class Board:
         self.tick = 0
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
+        self.consequences: list[Consequence] = []  # acts of the supervisor; a replay derives them
         self.pending = PendingQueue()
         self.trip: Trip | None = None
         self.lost: Lost | None = None
         self.folds = fold.begin(self.wiring.signals.outputs)
         self.used: set[str] = set()
         self.observer = Observer(self.spec, self.wiring)
-        self._linked: Wiring | None = None
-        self._running: list[int] = []
-        self._rows = self._table = self.wiring.table
-        self._parts: list[TablePart] = []
-        self._awaited: list[SharedSegment] = []
+        self.walk = Walk(self.wiring, compiled=compiled)
         self._allocate()
         self.link()
 
@@ -124,7 +120,7 @@ class Board:
     @property
     def unfused(self) -> list[SharedSegment]:
         """The segments of a board that fuses whose code is not loaded."""
-        return [segment for segment in self._awaited if not segment.address]
+        return [segment for segment in self.walk.awaited if not segment.address]
 
     def value(self, signal: str) -> float:
         """Return the value of a signal after the last tick."""
@@ -139,18 +135,9 @@ class Board:
         aside = {*self.spec.controllers, *self.spec.sensors} - self.used
         return fold.digest(self.folds, ["" if block in aside else block for block in self.wiring.signals.output_blocks])
 
-    def scores(self) -> dict[str, score.Scores]:
+    def scores(self) -> dict[str, Scores]:
         """Return the score of every diagnoser that chooses between hypotheses; none on a record without labels."""
-        found: dict[str, score.Scores] = {}
-        if self.spec.record is not None and self.spec.record.label is None:
-            return found
-        for name, section in self.spec.diagnosers.items():
-            if not scored(section.block):
-                continue
-            winner, unexplained = int(self.value(f"{name}.winner")), self.value(f"{name}.unexplained") != 0.0
-            names = names_of(section.params)
-            found[name] = score.read(self.wiring.state(f"{name}.score"), names, winner, unexplained)
-        return found
+        return scores(self.spec, self.wiring)
 
     # -- time
 
@@ -161,8 +148,7 @@ class Board:
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
         first, idle = self.tick, self._advance(n, None)
-        done = self.tick - first
-        return Rows(first, done, self._outputs[:done], self._taps[:done], idle)
+        return Rows(first, done := self.tick - first, self._outputs[:done], self._taps[:done], idle)
 
     @property
     def keeps(self) -> bool:
@@ -177,13 +163,12 @@ class Board:
 
     def _advance(self, n: int, history: History | None) -> BoolArray:
         """Run ticks, and return the taps that stayed 0 throughout."""
-        first, end = self.tick, self.tick + min(n, CHUNK, self._left)
-        if any(segment.address for segment in self._awaited):
-            self._join()
-        idle = self._idle
+        first, end = self.tick, self.tick + min(n, CHUNK, self._left())
+        self.walk.join()
+        idle = self.walk.idle
         while self.tick < end:
             self.apply_due()
-            idle = idle & self._idle
+            idle = idle & self.walk.idle
             if self.trip is not None:
                 break
             for finding in self.observer.caution(self.spec, self.tick):
@@ -204,15 +189,12 @@ class Board:
                 self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
         return idle
 
-    @property
     def _left(self) -> int:
-        """Ticks that the plant can still play; at the end of a record the board trips."""
-        record = self.spec.record
-        if record is None:
-            return CHUNK
-        if self.tick >= record.samples and self.trip is None:
+        """Return the ticks that the plant can still play; at the end of a record the board trips."""
+        left = CHUNK if self.spec.record is None else self.spec.record.samples - self.tick
+        if left <= 0 and self.trip is None:
             self._trip("the record has ended")
-        return record.samples - self.tick
+        return left
 
     def _supply(self, n: int) -> None:
         """Give the plant the samples of the next ticks, where it is a record."""
@@ -227,7 +209,7 @@ class Board:
         if why == program.DONE:  # it stops behind each tick in which anything changes
             return []
         last = self.wiring.w[None, RESERVED:]
-        taps, outputs = len(self._idle), self._outputs.shape[1]
+        taps, outputs = len(self.walk.idle), self._outputs.shape[1]
         return self.observer.look(self.spec, self.tick + ran - 1, last[:, :outputs], last[:, outputs : outputs + taps])
 
     def _run(self, n: int, at: int, history: History | None) -> tuple[int, int]:
@@ -249,42 +231,31 @@ class Board:
 
     def _keep(self, n: int, history: History) -> tuple[int, int]:
         """Run ticks into a history."""
-        wiring, resting = self.wiring, history.begin(self.tick, self._idle)
-        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, len(self._idle), self.folds
-        watches, followed = self.pending.watches(wiring.index), self.observer.followed
+        wiring, resting = self.wiring, history.begin(self.tick, self.walk.idle)
+        arrays = self.walk.table, wiring.p, wiring.s, wiring.w, wiring.io, len(self.walk.idle), self.folds
+        watches, followed = self._watches(), self.observer.followed
         rest: Any = *arrays, wiring.trip, watches, *followed, *history.rings, resting
         ran, why = kept.run(n, self.tick, self.dt_ms, *rest)
         history.end(ran)
         return ran, why
 
     def _loop(self, n: int, tick: int, outputs: FloatArray, taps: FloatArray, folds: Words) -> tuple[int, int]:
-        wiring, watches = self.wiring, self.pending.watches(self.wiring.index)
-        arrays = self._table, wiring.p, wiring.s, wiring.w, wiring.io, outputs, taps, folds
+        wiring, watches = self.wiring, self._watches()
+        arrays = self.walk.table, wiring.p, wiring.s, wiring.w, wiring.io, outputs, taps, folds
         arguments = n, tick, self.dt_ms, *arrays, wiring.trip, watches
-        return program.run(*arguments) if self.compiled else program.run_uncompiled(self._steps, *arguments)
+        return program.run(*arguments) if self.compiled else program.run_uncompiled(self.walk.steps, *arguments)
 
     def _look(self, tick: int) -> None:
         """Note at a tick edge which block has lost its state, if it had not before."""
         block = lost(self.wiring, self.spec)
         self.lost = (self.lost or Lost(block, tick)) if block else None
 
+    def _watches(self) -> FloatArray:
+        return supervision.watched(self.spec, self.wiring, self.pending.watches(self.wiring.index))
+
     def link(self) -> None:
-        """Put the addresses of the compiled steps into the table, and leave out rows that rest."""
-        wiring = self.wiring
-        if wiring is self._linked and not wiring.is_changed:
-            return
-        running = wiring.rest(self.spec)
-        if wiring is self._linked and running == self._running:
-            self._rows[:, program.EVERY] = wiring.table[running, program.EVERY]
-        else:
-            self._linked, self._running = wiring, running
-            self._rows = wiring.table[running]
-            self._idle = wiring.idle(running)
-            if self.compiled:
-                self._rows[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
-            else:
-                self._steps = [wiring.bound(row) for row in running]
-        self._find_parts()
+        """Take over a wiring that has changed."""
+        self.walk.link(self.wiring, self.spec)
 
     def fuse(self) -> None:
         """From now on run each segment of a tick as one function if its code is loaded; no bit depends on it.
@@ -292,20 +263,11 @@ class Board:
         ``unfused`` has the segments whose code is not loaded: until it is, their rows run one by one.
         """
         self.fuses = self.compiled
-        self._find_parts()
-
-    def _find_parts(self) -> None:
-        self._parts = parts(self.wiring, self._running) if self.fuses else []
-        self._join()
-
-    def _join(self) -> None:
-        """Put the loaded code of segments into the table that the loop walks."""
-        self._table = joined(self._rows, self._parts) if self._parts else self._rows
-        self._awaited = [part.segment for part in self._parts if part.segment and not part.segment.address]
+        self.walk.fuse(self.wiring)
 
     def renew(self) -> None:
         """Take the code of all steps that `core.kernel.renew` has loaded; at a tick edge, and no bit changes."""
-        self._linked = None
+        self.walk.forget()
         self.link()
 
     def _allocate(self) -> None:
@@ -323,6 +285,7 @@ class Board:
         InputError
             When the command is not allowed; nothing has changed then.
         """
+        self.obey()
         moment = command.tick(self.dt_ms)
         if moment is not None and moment < self.tick:
             raise InputError(f"sample {moment} has passed, the board is at {self.tick}", "at_sample")
@@ -337,8 +300,22 @@ class Board:
         self.pending.add(PendingCommand(command, actor, tick, condition, self.tick))
         return self.note(actor, "scheduled", f"waiting: {words.describe(command, self.spec.library)}", command=command)
 
+    def obey(self) -> None:
+        """Carry out the request of the supervisor, before any command at this tick; a tripped board does nothing.
+
+        It is a consequence of the samples, so it is no command that `save` or a track would repeat.
+        """
+        if not self.spec.supervisors or (requested := supervision.take_request(self.spec, self.wiring)) is None:
+            return
+        for command in requested.commands if self.trip is None else ():
+            try:
+                self._do(command, SUPERVISOR, requested.reason)
+            except InputError as error:
+                self.note(SUPERVISOR, "refused", f"{words.describe(command, self.spec.library)}: {error}")
+
     def apply_due(self) -> None:
         """Carry out the commands due at this tick, as the next advance would."""
+        self.obey()
         for entry in self.pending.take_due(self.tick):
             try:
                 self._do(entry.command, entry.actor)
@@ -346,10 +323,14 @@ class Board:
                 text = f"{words.describe(entry.command, self.spec.library)}: {error}"
                 self.note("board", "refused", text, command=entry.command)
 
-    def _do(self, command: Command, actor: str) -> LogEntry:
+    def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry:
+        """Carry out a command, or a consequence, which has a reason."""
         old, new = changes.carry_out(self, command)
-        self.done.append((self.tick, command))
-        text = words.describe(command, self.spec.library)
+        if reason:
+            self.consequences.append(Consequence(self.tick, command, reason))
+        else:
+            self.done.append((self.tick, command))
+        text = words.describe(command, self.spec.library) + (f": {reason}" if reason else "")
         return self.note(actor, command.kind, text, command=command.at(None), old=old, new=new)
 
     # -- log
@@ -388,7 +369,8 @@ class Board:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
         shared = {name: getattr(self, name) for name in SHARED}
-        return Checkpoint(self.tick, type(self), {**kept, **shared, "log": self.log.copy(), "done": list(self.done)})
+        lists = {"log": self.log.copy(), "done": list(self.done), "consequences": list(self.consequences)}
+        return Checkpoint(self.tick, type(self), {**kept, **shared, **lists})
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:
@@ -401,8 +383,8 @@ class Board:
 
     def _revive(self) -> None:
         """Make the parts that copies do not share."""
-        self.log, self.done = self.log.copy(), list(self.done)
-        self._linked = None
+        self.log, self.done, self.consequences = self.log.copy(), list(self.done), list(self.consequences)
+        self.walk = Walk(self.wiring, compiled=self.compiled, fuses=self.fuses)
         self._allocate()
         self.link()
 

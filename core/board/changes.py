@@ -138,6 +138,13 @@ def switched(spec: Spec, command: Switch) -> dict[str, Any]:
     return {path: block.name}
 
 
+def touched(spec: Spec, command: Command) -> set[str]:
+    """Return the paths of a bench that a command writes."""
+    if isinstance(command, Switch):
+        return {*switched(spec, command)}
+    return {*command.set} if isinstance(command, SetValues) else set()
+
+
 def disengage(board: ChangeableBoard) -> None:
     """Take the voltage off, as a trip does."""
     for instance in board.wiring.instances:

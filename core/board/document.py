@@ -24,6 +24,7 @@ PARKED = {"controller": ("controllers", "control"), "sensor": ("sensors", "sense
 EXCHANGED = {
     "reference.kind": ("reference", "reference", "kind", ()),
     "plant.model": ("plant", "plant", "model", ("drive", "every")),
+    "supervisor.kind": ("supervisor", "supervise", "kind", ()),
 }
 """Paths that name a block which is alone in its table: table, family, key, and the other keys it may have."""
 
@@ -51,6 +52,9 @@ ONE_DISPLACEMENT = ("reference", "model")
 CHOSEN = {"identifiers": "identify", "diagnosers": "diagnose", "readouts": "readout"}
 """Tables of blocks that a bench has by names of its own, each with its family."""
 
+SUPERVISOR = "supervisor"
+"""The table of the block that acts on the verdict of a diagnoser, and the name of that block."""
+
 SECTIONS = (
     "device",
     "environment",
@@ -67,6 +71,7 @@ SECTIONS = (
     "guard",
     "identifiers",
     "diagnosers",
+    SUPERVISOR,
     "readouts",
     "twins",
     "units",

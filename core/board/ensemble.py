@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from core.block import FloatArray
+from core.board import supervision
 from core.board.board import Board, Checkpoint
 from core.board.changes import switched
 from core.board.commands import Command, ResetTrip, SetValues, Switch
@@ -30,8 +31,8 @@ from core.signals import Signal, SignalTable
 MOST = 3
 """Twins of a board; four boards together."""
 
-OWN = ("plant", "slots", "controller", "controllers", "sensor", "sensors", "diagnosers", "readouts", "drive", "board",
-       "guard")  # fmt: skip
+OWN = ("plant", "slots", "controller", "controllers", "sensor", "sensors", "diagnosers", "supervisor", "readouts",
+       "drive", "board", "guard")  # fmt: skip
 """Sections a twin may have of its own; it shares all others with the board."""
 
 SHOWN = ("plant.displacement", "plant.velocity", "sensor.displacement", "model.displacement", "reference.voltage")
@@ -77,6 +78,7 @@ def twin_specs(document: Document) -> dict[str, Spec]:
     for name, own in twin_documents(document).items():
         try:
             found[name] = parse(own)
+            supervision.check(found[name])
         except InputError as error:
             raise error.under(f"twins.{name}") from None
     return found
@@ -267,7 +269,13 @@ class Ensemble(Board):
 def _shown(twin: Board) -> list[int]:
     """Return the columns of a twin worth seeing."""
     spec = twin.spec
-    blocks = {*spec.driving.values(), "drive", *spec.diagnosers, *(f"{name}.score" for name in spec.diagnosers)}
+    blocks = {
+        *spec.driving.values(),
+        "drive",
+        *spec.diagnosers,
+        *spec.supervisors,
+        *(f"{name}.score" for name in spec.diagnosers),
+    }
     if spec.axes:
         blocks |= {"plant", *spec.generators, *spec.readouts}
         blocks |= {f"{part}.{axis}" for part in ("sensor", "drive") for axis in spec.axes}

@@ -86,6 +86,7 @@ def suited(spec: Spec) -> Spec:
         _refuse_held(spec)
     for key in CHOSEN:
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
+    fields |= {f"{key}.kind": section.block for key, section in spec.supervisors.items()}
     for path, block in fields.items():
         reason = (misfit(block, plant) if block is not plant else "") or block.unsuited(*pair)
         if reason:

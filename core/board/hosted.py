@@ -85,7 +85,7 @@ class Hosted(Board):
         """Link the board, then find the rows of the blocks from outside and their inputs."""
         super().link()
         for one in self._asked:
-            one.link(self.wiring, self._running, self.dt_ms)
+            one.link(self.wiring, self.walk.running, self.dt_ms)
         self._asked.sort(key=lambda one: one.cut)
         self._cut = self._asked[-1].cut
 
@@ -114,10 +114,10 @@ class Hosted(Board):
         """Refuse: a part that runs outside cannot be copied."""
         raise InputError("cannot be copied: part of it runs outside", "board")
 
-    def _do(self, command: Command, actor: str) -> LogEntry:
+    def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry:
         law = self._law
         ran_away = law is not None and not math.isfinite(law.answered[0])
-        entry = super()._do(command, actor)
+        entry = super()._do(command, actor, reason)
         if law is not None and isinstance(command, Switch) and command.switch == law.key:
             law.begins |= command.cold or ran_away
         if isinstance(command, ResetTrip):
@@ -146,7 +146,7 @@ class Hosted(Board):
         """Run some rows of a tick."""
         wiring = self.wiring
         if self.compiled:
-            rows = self._table[first:end]
+            rows = self.walk.table[first:end]
             program.begin(rows, tick, self.dt_ms, wiring.p, wiring.s, wiring.w, wiring.io)
         else:
             self._walk_uncompiled(first, end, tick)
@@ -154,13 +154,13 @@ class Hosted(Board):
     @np.errstate(all="ignore")
     def _walk_uncompiled(self, first: int, end: int, tick: int) -> None:
         self.wiring.w[TICK], self.wiring.w[TIME_MS] = tick, tick * self.dt_ms
-        for step, row in zip(self._steps[first:end], self._table[first:end], strict=True):
+        for step, row in zip(self.walk.steps[first:end], self.walk.table[first:end], strict=True):
             if tick % row[program.EVERY] == 0:
                 step()
 
     def _run(self, n: int, at: int, history: History | None) -> tuple[int, int]:
         wiring, cut = self.wiring, self._cut
-        watches = self.pending.watches(wiring.index)
+        watches = self._watches()
         for i in range(n):
             tick = self.tick + i
             self._begin(tick)
@@ -169,7 +169,7 @@ class Hosted(Board):
                 1,
                 tick,
                 self.dt_ms,
-                self._table[cut:],
+                self.walk.table[cut:],
                 wiring.p,
                 wiring.s,
                 wiring.w,
@@ -180,7 +180,7 @@ class Hosted(Board):
                 wiring.trip,
                 watches,
             )
-            _, why = program.run(*rest) if self.compiled else program.run_uncompiled(self._steps[cut:], *rest)
+            _, why = program.run(*rest) if self.compiled else program.run_uncompiled(self.walk.steps[cut:], *rest)
             self._look(tick + 1)
             if why != program.DONE:
                 return i + 1, why

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from core.board.board import Board
+from core.board.document import SUPERVISOR
 from core.board.ensemble import Ensemble
 from core.board.instances import weighing_blocks
 from core.board.pending import PendingQueue
@@ -35,7 +36,7 @@ def idle_blocks(board: Board, pending: PendingQueue, wants_estimates: bool) -> s
     These are controllers that drive neither now nor by a command that waits, and weighted estimates that nobody wants.
     """
     spec, wiring, named = board.spec, board.wiring, _named(pending)
-    idle = {*spec.controllers} - {*spec.driving.values()} - named
+    idle = {*spec.controllers} - {*spec.driving.values()} - named - _words(spec.document.get(SUPERVISOR, ""))
     if not wants_estimates:
         conditions = " ".join(entry.command.when or "" for entry in pending)
         weighing = weighing_blocks(wiring.instances)
@@ -53,4 +54,8 @@ def idle_blocks(board: Board, pending: PendingQueue, wants_estimates: bool) -> s
 
 def _named(pending: PendingQueue) -> set[str]:
     """Return all words of the commands that wait, their conditions included."""
-    return {word for entry in pending for word in re.findall(r"\w+", str(entry.command.document()))}
+    return _words([entry.command.document() for entry in pending])
+
+
+def _words(said: object) -> set[str]:
+    return {*re.findall(r"\w+", str(said))}

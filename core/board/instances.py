@@ -87,6 +87,7 @@ def instances(spec: Spec) -> list[Instance]:
         order.append(_waiting(spec, name, section))
         if scored(section.block):
             order += [_scoring(spec, name, section), *_estimating(spec, name, section)]
+    order += [_usual(name, section) for name, section in spec.supervisors.items()]
     if spec.axes:
         order += [_usual(name, section) for name, section in spec.generators.items()]
     else:

@@ -45,7 +45,7 @@ class Lane(Board):
         self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
         self.base = spec.document
         self.compiled, self.tick, self.trip, self.lost = True, 0, None, None
-        self.log, self.done, self.used = Log(), [], set()
+        self.log, self.done, self.consequences, self.used = Log(), [], [], set()
         self.followers: list[Lane] = []
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
         self._unlike: dict[tuple[int, str], set[str]] = {}
@@ -114,7 +114,7 @@ class Lane(Board):
             lane.wiring.instances[row] = instance
             lane.wiring.p[part] = own if is_shared else instance.packed(lane.spec.context(*place))
 
-    def _do(self, command: Command, actor: str) -> LogEntry | None:  # type: ignore[override]
+    def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry | None:  # type: ignore[override]
         changes.carry_out(self, command)
         self.done.append((self.tick, command))
         return None

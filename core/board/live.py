@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.board.document import CHOSEN, PARKED, as_written
+from core.board.document import CHOSEN, PARKED, SUPERVISOR, as_written
 from core.board.parse import changed
 from core.board.spec import Section, Spec
 from core.cards import is_live
@@ -61,6 +61,10 @@ def _check_live(spec: Spec, new: Spec) -> None:
         before = getattr(spec, key)
         for name, section in getattr(new, key).items():
             _check_section(f"{key}.{name}", before[name], section)
+    if list(new.supervisors) != list(spec.supervisors):
+        raise _not_live(SUPERVISOR)
+    for key, section in new.supervisors.items():
+        _check_section(key, spec.supervisors[key], section)
     for key in CHOSEN:
         before, after = getattr(spec, key), getattr(new, key)
         if list(after) != list(before):
@@ -76,7 +80,7 @@ def _check_section(path: str, old: Section, new: Section) -> None:
         raise _not_live(f"{path}.every")
     if old.block is not new.block:
         ports = [(port.name, port.labels) for port in (*old.block.outputs, *old.block.taps)]
-        if path.startswith(tuple(CHOSEN)) or ports != [
+        if path.startswith((*CHOSEN, SUPERVISOR)) or ports != [
             (p.name, p.labels) for p in (*new.block.outputs, *new.block.taps)
         ]:
             raise _not_live(f"{path}.kind")
@@ -108,7 +112,7 @@ def section_at(spec: Spec, head: str) -> Section | None:
     sections: dict[str, Section] = {key: getattr(spec, key) for key in LIVE_SECTIONS}
     for key in ("controllers", "sensors", *CHOSEN):
         sections |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
-    sections |= spec.generators
+    sections |= {**spec.generators, **spec.supervisors}
     sections["controller"] = spec.controllers[spec.active]
     sections["sensor"] = spec.sensors[spec.measuring]
     return sections.get(head)

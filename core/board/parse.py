@@ -12,6 +12,7 @@ from core.block import Block, BlockParams
 from core.board.document import (
     CHOSEN,
     SILENT,
+    SUPERVISOR,
     Document,
     as_written,
     completed,
@@ -167,6 +168,11 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
             for name, table in tables.items()
         }
 
+    def supervisors() -> dict[str, Section]:
+        if before is not None and same(SUPERVISOR):
+            return before.supervisors
+        return {SUPERVISOR: _supervising(library, doc[SUPERVISOR])} if SUPERVISOR in doc else {}
+
     spec = Spec(
         document=doc,
         faults=before.faults if before is not None else {},
@@ -184,6 +190,7 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         driving=driving(doc, plant.block),
         generators={key: generator(key, family) for key, family in plant.block.generators.items()},
         controllers=all_of("controllers", "control"),
+        supervisors=supervisors(),
         **{key: chosen(key, family) for key, family in CHOSEN.items()},
     )
     if before is not None and spec.device is before.device:
@@ -291,6 +298,15 @@ def _measuring(library: Library, kind: object) -> str:
     if all(port.name != "displacement" for port in block.outputs):
         raise InputError(f"{block.name} puts out no displacement; choose a unit that recovers one", "sensor.kind")
     return block.name
+
+
+def _supervising(library: Library, table: object) -> Section:
+    if not isinstance(table, dict):
+        raise InputError(f"must be a table, got {short(table)}", SUPERVISOR)
+    section = _chosen(library, "supervise", table, SUPERVISOR)
+    if section.every != 1:
+        raise InputError("a supervisor runs at each tick", f"{SUPERVISOR}.every", "leave it out")
+    return section
 
 
 def _named(library: Library, family: str, key: str, name: str, table: Document) -> Section:

@@ -45,6 +45,8 @@ class Pattern:
     def __init__(self, board: Board) -> None:
         if any(entry.condition is not None or entry.tick is None for entry in board.pending) or board.tick:
             raise Uneven("a command waits for a condition")
+        if board.spec.supervisors:
+            raise Uneven("a supervisor acts on the samples")
         leave_out_idle(board)
         self.board = board
         wiring = board.wiring

@@ -15,6 +15,7 @@ from core.block import Block, BlockParams, Context, Oscillator
 from core.board.document import Document, sections
 from core.board.library import Library, library_of
 from core.device.device import Device
+from core.diagnose.hypothesis import hypotheses_of
 from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
 from core.loop.environment import Environment
@@ -24,7 +25,7 @@ from core.plant.record import RecordPlant
 from core.table import Table
 
 ALONE = ("environment", "plant", "reference", "model", "drive", "board", "guard")
-GROUPS = ("sensors", "generators", "controllers", "identifiers", "diagnosers", "readouts")
+GROUPS = ("sensors", "generators", "controllers", "identifiers", "diagnosers", "supervisors", "readouts")
 """Sections of a bench, and tables of sections by name."""
 ALL_ALONE, ALL_GROUPS = attrgetter(*ALONE), attrgetter(*GROUPS)
 
@@ -64,7 +65,7 @@ class Spec:
 
     ``document`` is its source in normal form: ``controllers`` and ``sensors`` hold the parameters of the controller and
     the sensor in use. ``driving`` names the controller of each slot, ``faults`` holds the faults that act. A plant with
-    axes has neither reference nor model; these two sections then do nothing.
+    axes has neither reference nor model; these two sections then do nothing. ``supervisors`` has at most one.
     """
 
     document: Document
@@ -84,6 +85,7 @@ class Spec:
     controllers: dict[str, Section]
     identifiers: dict[str, Section]
     diagnosers: dict[str, Section]
+    supervisors: dict[str, Section]
     readouts: dict[str, Section]
     faults: dict[str, BlockParams] = field(default_factory=dict)
 
@@ -133,6 +135,12 @@ class Spec:
     def nominal(self) -> Oscillator:
         """The nominal device."""
         return self.device.oscillator()
+
+    @cached_property
+    def banks(self) -> dict[str, dict[str, Oscillator]]:
+        """The devices that each diagnoser chooses between, by the names of its hypotheses."""
+        banks = {key: hypotheses_of(section.params) for key, section in self.diagnosers.items()}
+        return {key: {one.name: one.oscillator(self.nominal) for one in bank} for key, bank in banks.items() if bank}
 
     @cached_property
     def surroundings(self) -> tuple[float, float]:
@@ -227,6 +235,7 @@ class Spec:
             limit_un=AxisDrive.reach(drive) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
+            banks=self.banks,
         )
 
     def with_seed(self, seed: int) -> Spec:
@@ -247,5 +256,5 @@ class Spec:
         return spec
 
 
-OF_CONTEXT = ("frame", "device", "environment", "drive", "reference", "model", "measuring", "sensors")
+OF_CONTEXT = ("frame", "device", "environment", "drive", "reference", "model", "measuring", "sensors", "diagnosers")
 """Parts of a bench that blocks may know of."""

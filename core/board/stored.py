@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from core.board.document import Document
 from core.board.ensemble import Ensemble, make
 from core.board.lost import Lost
 from core.board.pending import PendingCommand, PendingQueue
+from core.board.supervision import Consequence
 from core.errors import InputError
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -78,6 +80,7 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
     document = {
         "tick": board.tick,
         "done": [[tick, command.document()] for tick, command in board.done],
+        "consequences": [[one.tick, one.command.document(), one.reason] for one in board.consequences],
         "pending": [_waiting(entry) for entry in board.pending],
         "asked": board.pending.asked,
         "lost": board.lost,
@@ -91,13 +94,17 @@ def _one(board: Board) -> tuple[Document, dict[str, NDArray[Any]]]:
 
 def _go_on(board: Board, document: Document, arrays: Arrays) -> None:
     """Carry out the stored commands on a board at tick 0, then give it the stored numbers."""
-    for tick, command in document["done"]:
+    # a consequence comes before the commands of its tick
+    for tick, command, *reason in sorted([*document.get("consequences", []), *document["done"]], key=itemgetter(0)):
         parsed = parse_command(command)
         board.tick = tick
         if parsed.kind == "reset_trip":  # only a board that has tripped takes it; here no tick has run
             board.trip = Trip(tick=tick, time_ms=0.0, reason="", signal="", value=None)
         changes.carry_out(board, parsed)
-        board.done.append((tick, parsed))
+        if reason:
+            board.consequences.append(Consequence(tick, parsed, *reason))
+        else:
+            board.done.append((tick, parsed))
     board.tick, board.used = document["tick"], set(document["used"])
     board.trip = Trip.model_validate(document["trip"]) if document["trip"] is not None else None
     board.lost = Lost(*document["lost"]) if document.get("lost") else None

@@ -20,7 +20,7 @@ def sections(spec: Spec) -> dict[str, Section]:
     found |= {key: getattr(spec, key) for key in SINGLE if key not in ("reference", "model")}
     for key in ("controllers", "sensors", *CHOSEN):
         found |= {f"{key}.{name}": section for name, section in getattr(spec, key).items()}
-    return found | spec.generators
+    return found | spec.generators | spec.supervisors
 
 
 def tuned(spec: Spec) -> dict[str, Any]:

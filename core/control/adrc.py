@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Literal
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
+from core.block import Block, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import unsuited_second_order
-from core.control.nominal import Following, FollowingPorts, followed, following
+from core.control.nominal import Following, FollowingPorts, KnownParams, followed, following, known
 from core.control.observer import Observed, StateObserver, observe, observer_of
 from core.ports import tap
 from core.record import Record
@@ -41,8 +41,8 @@ class Adrc(Block):
         "A fast observer passes the noise of the sensor on to the drive.",
     )
 
-    class Params(BlockParams):
-        """Bandwidths over the resonance, and the model of the observer."""
+    class Params(KnownParams):
+        """The assumed device, bandwidths over the resonance, and the model of the observer."""
 
         controller_bandwidth: float = parameter(1.0, "omega_c over w0", gt=0.05, le=20)
         observer_bandwidth: float = parameter(5.0, "omega_o over w0", gt=0.05, le=100)
@@ -81,18 +81,18 @@ class Adrc(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the observer and the law."""
-        rate, device = context.device.natural_frequency, context.device
-        known = device if params.plant == "nominal" else replace(device, damping=0.0, stiffness=0.0)
+        rate, device = context.device.natural_frequency, known(params, context)
+        model = device if params.plant == "nominal" else replace(device, damping=0.0, stiffness=0.0)
         p = cls.Packed.zeros()
-        p.observer = observer_of(known, context, params.observer_bandwidth * rate)
+        p.observer = observer_of(model, context, params.observer_bandwidth * rate)
         if device.force == 0.0:
             return p  # nothing moves this device
-        p.following = following(known, context.model)
+        p.following = following(model, context.model)
         bandwidth, of_acceleration = params.controller_bandwidth * rate, device.mass / device.force
         p.by_disturbance = of_acceleration
         p.by_error, p.by_velocity_error = bandwidth * bandwidth * of_acceleration, 2.0 * bandwidth * of_acceleration
         # the model's motion is in `following`: only its difference from the estimate is left
-        p.by_displacement, p.by_velocity = known.stiffness / device.force, known.damping / device.force
+        p.by_displacement, p.by_velocity = model.stiffness / device.force, model.damping / device.force
         return p
 
     @staticmethod

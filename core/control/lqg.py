@@ -9,13 +9,56 @@ import numpy as np
 
 from core.block import Block, BlockParams, Context, Equation, FloatArray, Oscillator, Stage, parameter
 from core.control.controller import unsuited_second_order
-from core.control.nominal import Following, FollowingPorts, followed, following, over_sample
+from core.control.nominal import Following, FollowingPorts, KnownParams, followed, following, known, over_sample
 from core.errors import InputError
-from core.kernel import flush_tiny
+from core.kernel import flush_tiny, kernel
 from core.matrix import product, riccati, solved
 from core.ports import tap
 from core.record import Record, Vector, vector
 from core.voltage import Motion, Tick, add_moves, advance_motion, moves
+
+
+class LqgParams(BlockParams):
+    """The cost of the voltage, and the assumed noise."""
+
+    voltage_cost_um_v: float = parameter(0.03, "root of the cost of a volt", "um/V", ge=1e-6, le=1e3)
+    process_noise_v: float = parameter(1.0, "assumed noise on the voltage, rms per sample", "V", ge=1e-6, le=100)
+    sensor_noise_um: float | None = parameter(
+        None, "assumed sensor noise; the sensor's own unless given", "um", ge=1e-6, le=100
+    )
+
+
+class LqgLaw(Record):
+    """The device over a sample, the voltage of the model's motion, gains of the regulator and of the filter."""
+
+    device: Tick
+    following: Following
+    regulate: Vector = vector(2)
+    correct: Vector = vector(2)
+
+
+def fill_law(p: LqgLaw, device: Oscillator, params: LqgParams, context: Context) -> None:
+    """Pack a device, and the gains of both Riccati equations."""
+    p.device, p.following = over_sample(device, context), following(device, context.model)
+    phi = np.array([[p.device.phi11, p.device.phi12], [p.device.phi21, p.device.phi22]])
+    push, seen = np.array([[p.device.push1], [p.device.push2]]), np.array([[1.0, 0.0]])
+    p.regulate[:] = gains(phi.T, push.T, product(seen.T, seen), params.voltage_cost_um_v**2, shift=True)
+    noise_um = params.sensor_noise_um or context.assumed_noise_um
+    p.correct[:] = gains(phi, seen, product(push, push.T) * params.process_noise_v**2, noise_um**2)
+
+
+@kernel
+def regulated(p: LqgLaw, s: Motion, x: FollowingPorts) -> float:
+    """Predict by the voltage applied, correct by the measurement; return the voltage about the motion of the model."""
+    u, middle, end = moves(x)
+    advance_motion(p.device, s, u)
+    add_moves(p.device, s, middle, end)
+    missed = x.measured - s.x
+    if math.isfinite(missed):
+        s.x = flush_tiny(s.x + p.correct[0] * missed)
+        s.v = flush_tiny(s.v + p.correct[1] * missed)
+    behind: float = p.regulate[0] * (s.x - x.model) + p.regulate[1] * (s.v - x.model_velocity)
+    return followed(p.following, x) - behind
 
 
 class Lqg(Block):
@@ -40,22 +83,11 @@ class Lqg(Block):
     )
     weaknesses = ("It has no integral action: under a device that differs from the nominal device an error stays.",)
 
-    class Params(BlockParams):
-        """The cost of the voltage, and the assumed noise."""
+    class Params(LqgParams, KnownParams):
+        """The assumed device, the cost of the voltage, and the assumed noise."""
 
-        voltage_cost_um_v: float = parameter(0.03, "root of the cost of a volt", "um/V", ge=1e-6, le=1e3)
-        process_noise_v: float = parameter(1.0, "assumed noise on the voltage, rms per sample", "V", ge=1e-6, le=100)
-        sensor_noise_um: float | None = parameter(
-            None, "assumed sensor noise; the sensor's own unless given", "um", ge=1e-6, le=100
-        )
-
-    class Packed(Record):
-        """The device over a sample, the voltage of the model's motion, gains of the regulator and of the filter."""
-
-        device: Tick
-        following: Following
-        regulate: Vector = vector(2)
-        correct: Vector = vector(2)
+    class Packed(LqgLaw):
+        """The law."""
 
     class State(Record):
         """Estimated displacement and velocity."""
@@ -75,29 +107,15 @@ class Lqg(Block):
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack the device, and the gains of both Riccati equations."""
+        """Pack the law of the assumed device."""
         p = cls.Packed.blank()
-        p.device, p.following = over_sample(context.device, context), following(context.device, context.model)
-        phi = np.array([[p.device.phi11, p.device.phi12], [p.device.phi21, p.device.phi22]])
-        push, seen = np.array([[p.device.push1], [p.device.push2]]), np.array([[1.0, 0.0]])
-        p.regulate[:] = gains(phi.T, push.T, product(seen.T, seen), params.voltage_cost_um_v**2, shift=True)
-        noise_um = params.sensor_noise_um or context.assumed_noise_um
-        p.correct[:] = gains(phi, seen, product(push, push.T) * params.process_noise_v**2, noise_um**2)
+        fill_law(p, known(params, context), params, context)
         return p
 
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
         """Predict by the voltage applied, correct by the measurement, regulate about the motion of the model."""
-        u, middle, end = moves(x)
-        advance_motion(p.device, s.estimate, u)
-        add_moves(p.device, s.estimate, middle, end)
-        missed = x.measured - s.estimate.x
-        if math.isfinite(missed):
-            s.estimate.x = flush_tiny(s.estimate.x + p.correct[0] * missed)
-            s.estimate.v = flush_tiny(s.estimate.v + p.correct[1] * missed)
-        wanted = followed(p.following, x)
-        behind = p.regulate[0] * (s.estimate.x - x.model) + p.regulate[1] * (s.estimate.v - x.model_velocity)
-        x.voltage = wanted - behind
+        x.voltage = regulated(p, s.estimate, x)
         x.estimate = s.estimate.x
         x.velocity = s.estimate.v
 

@@ -1,8 +1,10 @@
-"""The nominal device as a controller knows it: its motion over a sample, and the voltage of the model's motion."""
+"""The device as a controller knows it: its motion over a sample, and the voltage of the model's motion."""
 
 from __future__ import annotations
 
-from core.block import Context, Oscillator
+from typing import Any
+
+from core.block import BlockParams, Context, Oscillator, parameter
 from core.control.controller import ControllerPorts
 from core.device.oscillator import held, within
 from core.kernel import kernel
@@ -15,6 +17,30 @@ class FollowingPorts(ControllerPorts):
     """Ports of a controller that moves the device as the model moves, by the voltage of `followed`."""
 
     model_velocity: float = reads("model.velocity", "um/ms", "velocity of the model")
+
+
+class KnownParams(BlockParams):
+    """The device that a law is designed for, as factors on the nominal device."""
+
+    mass_ratio: float = parameter(1.0, "mass that the law assumes, over nominal", gt=0.01, le=100)
+    stiffness_ratio: float = parameter(1.0, "stiffness that the law assumes, over nominal", gt=0.01, le=100)
+    damping_ratio: float = parameter(1.0, "damping that the law assumes, over nominal", gt=0.01, le=100)
+    gain_ratio: float = parameter(1.0, "drive gain that the law assumes, over nominal", gt=0.01, le=100)
+
+
+RATIOS = tuple(KnownParams.model_fields)
+
+
+def known(params: Any, context: Context) -> Oscillator:
+    """Return the device that a law with `KnownParams` is designed for."""
+    device = context.device
+    return Oscillator(
+        mass=device.mass * params.mass_ratio,
+        damping=device.damping * params.damping_ratio,
+        stiffness=device.stiffness * params.stiffness_ratio,
+        force=device.force * params.gain_ratio,
+        time_unit_ms=device.time_unit_ms,
+    )
 
 
 class Following(Record):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage, parameter
+from core.block import Block, Context, Equation, Oscillator, Stage, parameter
 from core.control.controller import unsuited_second_order
-from core.control.nominal import Following, FollowingPorts, followed, following, over_sample
+from core.control.nominal import Following, FollowingPorts, KnownParams, followed, following, known, over_sample
 from core.elementary import cos, sin
 from core.kernel import flush_tiny
 from core.ports import tap
@@ -44,8 +44,8 @@ class Resonant(Block):
         "It removes the error at its own harmonics alone: noise stays, and the harmonics next to them grow by a tenth.",
     )
 
-    class Params(BlockParams):
-        """Number of harmonics, and how fast their errors decay."""
+    class Params(KnownParams):
+        """The assumed device, number of harmonics, and how fast their errors decay."""
 
         harmonics: int = parameter(1, "harmonics of the tone", ge=1, le=MOST, live=False)
         rate: float = parameter(0.2, "rate of decay of the error, over the decay of the device itself", gt=0, le=2)
@@ -89,12 +89,12 @@ class Resonant(Block):
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the resonators below half the sample rate; samples do not show faster tones."""
-        device, tone = context.device, 1e-3 * context.tone_hz * context.dt_ms
+        device, tone = known(params, context), 1e-3 * context.tone_hz * context.dt_ms
         p = cls.Packed.zeros()
         p.dt_ms = context.dt_ms
         if device.force == 0.0:
             return p  # nothing moves this device
-        p.following = following(context.device, context.model)
+        p.following = following(device, context.model)
         decay = max(0.5 * device.damping / device.mass, 1e-3 * device.natural_frequency)
         own = over_sample(device, context)
         trace, determinant = own.phi11 + own.phi22, own.phi11 * own.phi22 - own.phi12 * own.phi21

@@ -47,6 +47,7 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "core.diagnose.hypothesis": DIAGNOSE,
     "core.diagnose.judge": ("Judge",),
     "core.diagnose.lanes": ("LANE",),
+    "core.supervise.supervisor": ("ActParams", "Supervisor", "SupervisorPorts"),
     "core.identify.estimator": ("Estimator",),
     "core.identify.identifier": ("PHYSICAL",),
     "core.device.oscillator": ("held", "transition"),

@@ -37,6 +37,14 @@ PUBLIC: dict[str, tuple[str, ...]] = {
     "readout": ("@active.rate",),
     "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
     "identify": (*MEASURED, *DRIVEN, *REFERENCE),
+    "supervise": (
+        "{diagnoser}.winner",
+        "{diagnoser}.unexplained",
+        *MEASURED,
+        "model.displacement",
+        *DRIVEN,
+        *REFERENCE,
+    ),
     "sense": ("plant.displacement", "plant.velocity", "@true.displacement", *MEASURED),
     "faults": (*(f"effects.{port.name}" for port in Effects.outputs), *DRIVEN),
 }
@@ -47,6 +55,7 @@ FIRST_OUTPUTS = {
     "sense": ("displacement",),
     "diagnose": ("probability",),
     "identify": ("estimate",),
+    "supervise": ("request",),
     "faults": ("severity",),
 }
 """Outputs that a unit of a family must have, for others read them."""

@@ -35,6 +35,7 @@ from core.own.values import Own
 from core.reference.waveform import Waveform
 from core.registry import blocks
 from core.sense.sensor import Sensor
+from core.supervise.supervisor import Supervisor
 from core.text import without_mark
 
 BASES: tuple[tuple[type[Block], str], ...] = (
@@ -43,6 +44,7 @@ BASES: tuple[tuple[type[Block], str], ...] = (
     (Sensor, "sense"),
     (Judge, "diagnose"),
     (Estimator, "identify"),
+    (Supervisor, "supervise"),
 )
 """The family of a unit, by its base; a unit on ``Block`` with the ports of a controller is a controller."""
 

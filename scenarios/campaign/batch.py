@@ -69,9 +69,9 @@ def outcomes(runs: Sequence[Run], on_tick: Callable[[int], None] = lambda _: Non
 def shape(scenario: Scenario) -> Any:
     """Return the properties that runs must share to run abreast; None for a run that runs alone."""
     commands = [command for event in scenario.events for command in event]
-    if scenario.study is not None or scenario.twins or any(c.when or isinstance(c, MakeSafe) for c in commands):
+    spec, alone = scenario.spec, any(c.when or isinstance(c, MakeSafe) for c in commands)
+    if scenario.study is not None or scenario.twins or spec.supervisors or alone:
         return None
-    spec = scenario.spec
     blocks = tuple((name, section.block, section.every) for name, section in spec.parts())
     rest = spec.measuring, spec.dt_ms, scenario.samples, scenario.asks_estimates
     return blocks, tuple(stages(spec)), tuple(spec.driving.items()), *rest

@@ -41,6 +41,7 @@ ABOUT = {
     "guard": "the limits at which the bench takes its outputs to their safe values",
     "identifiers": "identifiers, each under a name of your own",
     "diagnosers": "diagnosers, each under a name of your own",
+    "supervisor": "the supervisor, which acts on the verdict of a diagnoser",
     "readouts": "read-outs of a gyroscope, each under a name of your own",
     "twins": "benches that run beside this one and differ from it in some sections, each under a name of your own",
     "units": "units of your own, by name: their text",
@@ -50,7 +51,7 @@ ABOUT = {
 }
 """The meaning of each section; the generators of an installed plant may have other names."""
 CHOOSES = ("plant", "reference", "slots", "controller", "controllers", "sensor", "sensors", "identifiers", "diagnosers",
-           "readouts", "twins")  # fmt: skip
+           "supervisor", "readouts", "twins")  # fmt: skip
 """Sections that name blocks, besides the generators: units of a bench's own may be among these blocks."""
 
 UNIT: Schema = {
@@ -158,6 +159,7 @@ _SECTIONS: dict[str, Callable[[Definitions], Schema]] = {
     "board": _board,
     "guard": _either(Guard, AxisGuard),
     **{key: partial(_chosen, name) for key, name in CHOSEN.items()},
+    "supervisor": lambda known: family(known, "supervise"),
     "units": lambda known: named(known.add("OwnUnit", UNIT), MOST_UNITS),
     "packages": _packages,
 }

@@ -21,6 +21,7 @@ NAMES = {
     "control": "Controller",
     "identify": "Identifier",
     "diagnose": "Diagnoser",
+    "supervise": "Supervisor",
     "readout": "ReadOut",
     "faults": "Fault",
 }

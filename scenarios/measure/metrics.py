@@ -20,6 +20,7 @@ from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.rate import rate_metrics
 from scenarios.measure.sensing import sensing_metrics
 from scenarios.measure.stretch import Stretch
+from scenarios.measure.supervision import supervision_metrics
 from scenarios.measure.verdicts import verdict_metrics
 
 EXCITED = ("excitation", "excitation_relative", "identifiable")
@@ -215,7 +216,7 @@ def measure(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dic
             figures |= diagnosis_metrics(name, scores[name], step_lengths(trace[f"{name}.truth"]))
     if stretch.beside:
         figures |= delay_ratios(figures, list(scores), stretch.beside)
-    return figures | verdict_metrics(board, trace)
+    return figures | verdict_metrics(board, trace) | supervision_metrics(board, trace, stretch)
 
 
 def delay_ratios(figures: Mapping[str, float], names: Iterable[str], beside: str) -> dict[str, float]:

@@ -16,6 +16,7 @@ class Stretch(Table):
 
     since_ms: float = Field(0.0, ge=0, le=LONGEST_MS, description="moment that errors and settling count from, ms")
     tail_share: float = Field(TAIL, gt=0, le=1, description="share of the run that counts as its tail")
+    steps: bool = Field(False, description="errors of each step between faults, and the times to recover from them")
     beside: str = Field("", max_length=200, description="diagnoser over whose delays the delays of others are taken")
     estimation: bool = Field(False, description="whether weighted estimates run headless too, for their figures")
 

@@ -26,19 +26,19 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
     performance at the end of each stretch.
     """
     figures: dict[str, float] = {}
-    edges = _edges(board)
+    found = edges(board)
     for name in board.spec.diagnosers:
         prefix = f"diagnosis.{name}"
         verdict, alarm = trace.get(f"{name}.verdict"), trace.get(f"{name}.alarm")
         if verdict is not None:
-            figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], edges)
-            figures |= _alarms(prefix, verdict, NORMAL, trace[f"{name}.truth"], edges)
+            figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], found)
+            figures |= _alarms(prefix, verdict, NORMAL, trace[f"{name}.truth"], found)
         elif alarm is not None:
-            figures |= _alarms(prefix, alarm, 0, trace[f"{name}.truth"], edges)
+            figures |= _alarms(prefix, alarm, 0, trace[f"{name}.truth"], found)
         region = trace.get(f"{name}.region")
         if region is not None:
             loss = trace[f"{name}.loss"]
-            for step, (_, end) in enumerate(pairwise(edges), 1):
+            for step, (_, end) in enumerate(pairwise(found), 1):
                 figures[f"{prefix}.region.{step}"] = float(region[end - 1])
                 figures[f"{prefix}.loss.{step}"] = float(loss[end - 1])
         if f"{name}.estimate" in trace:
@@ -46,7 +46,7 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
     return figures
 
 
-def _edges(board: Board) -> list[int]:
+def edges(board: Board) -> list[int]:
     """Return the ticks at which a fault came or went, with start and end."""
     ticks = {tick for tick, command in board.done if isinstance(command, Inject | HealFaults)}
     return [0, *sorted(tick for tick in ticks if 0 < tick < board.tick), board.tick] if board.tick else []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from core.board.document import SUPERVISOR
 from core.board.log import LogEntry
 from core.board.spec import Spec
 from core.errors import InputError
@@ -45,6 +46,8 @@ class Doings:
     def sentence(self, entry: LogEntry, samples: NarratorSignals) -> Sentence | None:
         """Say an entry; nothing if it is of another kind."""
         command = entry.command or {}
+        if entry.actor == SUPERVISOR and entry.kind in ("set", "switch"):
+            return self._said("switch", entry.tick, f"the supervisor acts: {entry.text}", [], {})
         if entry.kind == "set":
             old, new = entry.old or {}, entry.new or {}
             self._limits = {path: new.get(path, value) for path, value in self._limits.items()}

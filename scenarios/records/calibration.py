@@ -22,8 +22,8 @@ LEAST = 400
 """Least samples of a healthy stretch."""
 MOST = 40_000
 """Most samples of a healthy stretch that are read."""
-UNCERTAIN = 0.02
-"""Largest standard error of mass and stiffness over their values; hypotheses are 5 % apart."""
+UNCERTAIN = {"mass": 0.02, "stiffness": 0.02, "damping": 0.1}
+"""Largest standard errors over the values; hypotheses are 5 and 30 % apart."""
 
 
 @dataclass(frozen=True)
@@ -131,11 +131,11 @@ def _variance(row: Numbers, covariance: Numbers) -> float:
 
 def _uncertain(estimates: dict[str, Estimate]) -> str:
     """Return the sentence for an input that cannot tell mass from stiffness."""
-    for name in ("mass", "stiffness"):
+    for name, most in UNCERTAIN.items():
         one = estimates[name]
-        if not one.error <= UNCERTAIN * one.value:
+        if not one.error <= most * one.value:
             return (
-                f"the {name} is uncertain by {100.0 * one.error / one.value:.0f} %: this voltage cannot tell mass from "
-                "stiffness; excite the device with two tones, a chirp or steps"
+                f"the {name} is uncertain by {100.0 * one.error / one.value:.0f} %: this voltage cannot tell mass, "
+                "damping and stiffness apart; excite the device with two tones, a chirp or steps"
             )
     return ""

@@ -23,6 +23,7 @@ WHERE = {
     "diagnose": ({"diagnosers.{name}.kind": "{name}"}, "{name}"),
     "identify": ({"identifiers.{name}.kind": "{name}"}, "{name}"),
     "faults": ({}, "faults.{name}"),
+    "supervise": ({"supervisor.kind": "{name}"}, "supervisor"),
     "readout": ({"readouts.{name}.kind": "{name}"}, "{name}"),
 }
 """Values of a bench that has a unit of each family in use, and the block to measure."""

@@ -8,6 +8,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from core.board.board import Board
+from core.board.document import SUPERVISOR
 from core.board.packages import TABLE, carried
 from core.board.spec import Section
 from core.board.words import describe
@@ -16,7 +17,16 @@ from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
-from server.bench.status import ActiveFault, Bench, BenchStatus, DiagnoserInfo, Pending, State
+from server.bench.status import (
+    ActiveFault,
+    Bench,
+    BenchStatus,
+    DiagnoserInfo,
+    Pending,
+    State,
+    SupervisorAct,
+    SupervisorStatus,
+)
 from server.errors import ApiError
 from server.store.experiment import THIS_VERSION, Experiment
 
@@ -66,6 +76,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
         undo=bench.changes.last_done,
         redo=bench.changes.last_undone,
         trip=board.trip,
+        supervisor=_supervisor(board) if isinstance(board, Board) and board.spec.supervisors else None,
         scores={name: found for name, found in board.scores().items() if found.samples},
         last_event=bench.events.last,
         recording=list(bench.recordings.under_way),
@@ -73,6 +84,33 @@ def status_of(bench: LiveBench) -> BenchStatus:
         earliest_tick=bench.track and bench.track.first_tick,
         travel=bench.travel and bench.travel.model_copy(),
         origin=bench.origin and bench.origin.model_copy(update={"is_past": bench.is_past}),
+    )
+
+
+def _supervisor(board: Board) -> SupervisorStatus:
+    """Describe the supervisor of a board as it is now."""
+    section = board.spec.supervisors[SUPERVISOR]
+    diagnoser, names = getattr(section.params, "diagnoser", ""), set(board.signals.names)
+    words = [*board.spec.banks.get(diagnoser, {}), "none fits"]
+
+    def now(port: str) -> float | None:
+        return board.value(f"{SUPERVISOR}.{port}") if f"{SUPERVISOR}.{port}" in names else None
+
+    def said(port: str) -> str:
+        index = now(port)
+        return words[int(index)] if index is not None and 0 <= index < len(words) else ""
+
+    last = board.consequences[-1] if board.consequences else None
+    return SupervisorStatus(
+        kind=section.block.name,
+        diagnoser=diagnoser,
+        verdict=said("verdict"),
+        acting=said("acting"),
+        held_ms=now("held_ms"),
+        dead_ms=now("dead_ms"),
+        acts=len(board.consequences),
+        last_act=last
+        and SupervisorAct(tick=last.tick, text=describe(last.command, board.spec.library), reason=last.reason),
     )
 
 

@@ -94,6 +94,27 @@ class Travel(BaseModel):
     share: float = Field(description="Finished ticks of the ticks that it takes")
 
 
+class SupervisorAct(BaseModel):
+    """An act of the supervisor."""
+
+    tick: int
+    text: str = Field(description="What it did, in words")
+    reason: str
+
+
+class SupervisorStatus(BaseModel):
+    """The supervisor now: its verdict, and its last act."""
+
+    kind: str
+    diagnoser: str
+    verdict: str = Field(description="Hypothesis that the weights name now; 'none fits', or empty without a verdict")
+    acting: str = Field(description="Verdict that was acted on last, in the same words")
+    held_ms: float | None = Field(description="Time for which the verdict has lasted; null: it has no verdict")
+    dead_ms: float | None = Field(description="Time left in which nothing counts; null: it has no such time")
+    acts: int = Field(description="Acts so far")
+    last_act: SupervisorAct | None
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -115,6 +136,7 @@ class BenchStatus(BaseModel):
     undo: Undoable | None = Field(None, description="The change that undo takes back")
     redo: Undoable | None = Field(None, description="The change that redo makes again")
     trip: Trip | None
+    supervisor: SupervisorStatus | None = Field(None, description="The supervisor, if the bench has one")
     scores: dict[str, Scores] = Field(description="Of each diagnoser that has judged a sample, against the truth")
     last_event: int
     recording: list[str] = Field(description="Recordings under way")

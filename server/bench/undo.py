@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from core.board.board import Board
+from core.board.changes import touched
 from core.board.commands import Command, MakeSafe, ResetTrip, SetValues
 from core.board.inverse import inverse
 from core.board.pending import PendingCommand
@@ -37,6 +38,7 @@ class UndoableChange:
     way: Way
     paths: frozenset[str] = frozenset()
     at: float = 0.0
+    tick: int = 0
 
 
 class Changes:
@@ -107,15 +109,28 @@ class Changes:
         if isinstance(way, Journal):
             before = self._bench.journal(with_past=True)
             event = self._bench.stand(way, actor, "restored", text)
-            target.append(UndoableChange(change.shown, before))
+            target.append(replace(change, way=before, tick=self._bench.board.tick))
             return event
         try:
+            self._check_unsupervised(change)
             back = self._go(way, actor)
         except InputError as error:
             refusal = f"{change.shown.text} can no more be {past}: {error}"
             raise InputError(refusal, "kind", error.hint, "conflict") from None
-        target.append(UndoableChange(change.shown, back))
+        target.append(replace(change, way=back, tick=self._bench.board.tick))
         return self._bench.note(actor, past, text)
+
+    def _check_unsupervised(self, change: UndoableChange) -> None:
+        """Refuse to take back a change of a value that the supervisor has set since."""
+        board = self._bench.board
+        if not isinstance(board, Board):
+            return
+        board.obey()
+        since = [one.command for one in board.consequences if one.tick > change.tick]
+        steps = [step.command if isinstance(step, PendingCommand) else step for step in change.way]  # type: ignore[union-attr]
+        own, its = ({path for one in part for path in touched(board.spec, one)} for part in (steps, since))
+        if both := sorted(own & its):
+            raise InputError(f"the supervisor has set {both[0]} since", hint="set it by hand")
 
     def _go(self, way: list[Command | PendingCommand], actor: str) -> Way:
         """Carry out as much of a way as possible; return the way back."""
@@ -147,6 +162,8 @@ class Changes:
     def _apply(self, command: Command, actor: str) -> tuple[Event, Way]:
         """Carry out a command; return its event and the way back."""
         board = self._bench.board
+        if isinstance(board, Board):
+            board.obey()  # an act at this tick comes first, and its values are the values before the command
         before = board.spec.document
         tripped: Journal | None = None
         if isinstance(command, ResetTrip) and board.trip is not None:
@@ -166,7 +183,9 @@ class Changes:
         now, last = self._bench.clock(), self._done[-1] if self._done else None
         if last is not None and paths and last.paths == paths and now - last.at < AT_ONCE_S:
             way = self._done.pop().way
-        self._done.append(UndoableChange(Undoable(seq=event.seq, text=event.text), way, paths, now))
+        self._done.append(
+            UndoableChange(Undoable(seq=event.seq, text=event.text), way, paths, now, self._bench.board.tick)
+        )
         journals = [i for i, change in enumerate(self._done) if isinstance(change.way, Journal)]
         first = journals[-MOST_JOURNALS - 1] + 1 if len(journals) > MOST_JOURNALS else 0
         self._done = self._done[max(first, len(self._done) - MOST) :]

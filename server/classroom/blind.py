@@ -38,8 +38,10 @@ def bank_of(spec: Spec) -> Section:
     Raises
     ------
     InputError
-        If the bench has none.
+        If the bench has none, or a supervisor, whose acts would tell the answer.
     """
+    if spec.supervisors:
+        raise InputError("has a supervisor, whose acts would tell the fault", "scenario", "leave the supervisor out")
     for section in spec.diagnosers.values():
         if isinstance(section.params, ModelList):
             return section

@@ -74,10 +74,10 @@ class FencedBoard(Board):
     def link(self) -> None:
         """Bind the steps that run to their arrays."""
         super().link()
-        fenced = [self.wiring.instances[row].block is self.entry for row in self._running]
-        self._steps = [
+        fenced = [self.wiring.instances[row].block is self.entry for row in self.walk.running]
+        self.walk.steps = [
             self._fenced(row) if own else _compiled(self.wiring, row)
-            for row, own in zip(self._running, fenced, strict=True)
+            for row, own in zip(self.walk.running, fenced, strict=True)
         ]
 
     def _fenced(self, row: int) -> Callable[[], None]:

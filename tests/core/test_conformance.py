@@ -27,7 +27,7 @@ STAGES = {"sampler": {"antialias_khz": 30.0, "jitter_us": 0.3}, "amplifier": {"d
           "amplifier_khz": 40.0}}  # fmt: skip
 """Values that put a stage of the board on a bench."""
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
-ENDS = ("not a finite", "touched", "shorted")
+ENDS = ("not a finite", "touched", "shorted", "the supervisor")
 PROFILES = (
     {"kind": "step"},
     {"kind": "ramp", "duration_ms": 0.7},
@@ -60,6 +60,8 @@ def path_of(entry: type[Block]) -> str:
         return "diagnosers.kalman"
     if entry.family == "identify":
         return "identifiers.own"
+    if entry.family == "supervise":
+        return "supervisor"
     if entry.family == "board":
         return entry.name
     if entry.family == "sense":
@@ -85,6 +87,8 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         return {SECTION[entry.family]: table}
     if entry.family == "identify":
         return {"identifiers.own.kind": entry.name}
+    if entry.family == "supervise":  # so soon that it acts within the run
+        return {"supervisor": {"kind": entry.name, "hold_ms": 0.05, "dead_ms": 0.1}}
     if entry.family == "diagnose":
         if "hypotheses" not in entry.Params.model_fields:
             return {"diagnosers": {"kalman": {"kind": entry.name}, "slow": {"kind": entry.name, "every": 2}}}
@@ -312,7 +316,7 @@ def test_a_parameter_at_its_limit_is_refused_or_runs(name):
 def at_its_limit(entry: type[Block], name: str, value: float) -> None:
     label = f"{name_of(entry)}.{name}={value:g}"
     values = {**chosen(entry), f"{path_of(entry)}.{name}": value}
-    bench = rich(entry) if entry.family == "diagnose" else {**rich(entry), "diagnosers": {}}
+    bench = rich(entry) if entry.family in ("diagnose", "supervise") else {**rich(entry), "diagnosers": {}}
     try:
         board = make(values, base=bench)
     except InputError as error:

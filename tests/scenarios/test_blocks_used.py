@@ -24,7 +24,13 @@ def blocks_of(spec: Spec) -> Iterator[tuple[str, str]]:
         yield "control", spec.controllers[name].block.name
     for name in needed(spec):
         yield "sense", spec.sensors[name].block.name
-    for family, sections in (("identify", spec.identifiers), ("diagnose", spec.diagnosers), ("readout", spec.readouts)):
+    named = {
+        "identify": spec.identifiers,
+        "diagnose": spec.diagnosers,
+        "supervise": spec.supervisors,
+        "readout": spec.readouts,
+    }
+    for family, sections in named.items():
         for section in sections.values():
             yield family, section.block.name
 

@@ -45,6 +45,21 @@ def models(first: float, second: float) -> dict[str, Any]:
 
 TONES = {"kind": "multi_sine", "tones": [{"frequency_hz": 1000.0}, {"frequency_hz": 3100.0}], "amplitude_v": 10.0}
 SOON = {"own.excitation_window_ms": 0.2, "own.least_excitation": 0.0, "sensor.noise_um": 0.0, "reference": TONES}
+
+
+def banks(first: float, second: float, other: float = 1.2) -> dict[str, Any]:
+    """Return two banks whose hypotheses are about the mass, and a supervisor that acts soon."""
+    pairs = {"kalman": (first, second), "other": (1.0, other)}
+    return {"own.hold_ms": 0.02, "own.dead_ms": 0.02} | {
+        f"diagnosers.{name}": {
+            "kind": "mmae",
+            "hypotheses": [{"name": f"m{round(1000 * mass)}", "mass": mass} for mass in pair],
+        }
+        for name, pair in pairs.items()
+    }
+
+
+BANKS = {name: value for name, value in banks(1.0, 1.5).items() if not name.startswith("own.")}
 LOUD = {"reference.amplitude_v": 40.0}
 WHERE: dict[str, dict[str, Any]] = {
     "prbs.chip_rate_hz": {"to": 20_000.0},
@@ -126,6 +141,24 @@ WHERE: dict[str, dict[str, Any]] = {
     "self_sliding.velocity": {"own.form": "velocity"},
     "reseed.sure": {"own.interval": 10, "own.sure": 0.5, "to": 1.0},
     "reseed.hopeless": {"own.interval": 10, "own.sure": 0.5, "own.hopeless": 0.0, "to": 0.5},
+    **{
+        f"{name}.{parameter}": {**banks(1.0, 1.5), **values}
+        for name in ("switching", "scheduling", "shutdown", "retuning")
+        for parameter, values in (
+            ("diagnoser", {}),
+            ("hold_ms", {"own.hold_ms": 0.2}),
+            ("dead_ms", {"own.dead_ms": 0.2}),
+            ("threshold", {"to": 0.999}),
+            ("release", {**banks(1.0, 1.001), "own.threshold": 0.501, "own.hold_ms": 0.0, "to": 0.0}),
+            ("on_unknown", {**banks(1.5, 1.3), "to": "safe"}),
+        )
+    },
+    "shutdown.on_unknown": {**banks(1.5, 1.3), "own.threshold": 1.0, "to": "safe"},
+    "switching.nominal": banks(1.0, 1.5),
+    "retuning.controller": banks(1.3, 1.5),
+    "retuning.least_change": {**banks(1.3, 1.5), "to": 1.0},
+    "multiple_model.diagnoser": BANKS,
+    "multiple_model.combine": BANKS,
     "regions.degraded_above": {"to": 1e-6},
     "regions.unacceptable_above": {"to": 1e-6},
     "regions.danger_above": {"to": 1e-6},
@@ -170,7 +203,9 @@ def dead(table: str, block: Any, base: dict[str, Any]) -> Iterator[str]:
             yield f"{block.name}.{card.name}"
 
 
-@pytest.mark.parametrize("family", [*"reference plant sense control diagnose identify rate readout".split(), "own"])
+@pytest.mark.parametrize(
+    "family", [*"reference plant sense control diagnose supervise identify rate readout".split(), "own"]
+)
 def test_every_parameter_of_a_block_changes_a_signal(family: str) -> None:
     found = [*(own_tables() if family == "own" else tables(family))]
     assert found and [name for one in found for name in dead(*one)] == []

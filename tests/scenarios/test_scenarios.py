@@ -143,6 +143,8 @@ def other_value(parameter: registry.ParameterCard) -> Any:
         return next(choice for choice in parameter.choices if choice != parameter.default)
     if parameter.type == "boolean":
         return not parameter.default
+    if parameter.type == "text":
+        return {"diagnoser": "other"}.get(parameter.name, "adrc")
     low = parameter.minimum if parameter.minimum is not None else -1e6
     high = parameter.maximum if parameter.maximum is not None else 1e6
     start = parameter.default if isinstance(parameter.default, int | float) else max(low, min(1.0, high))
@@ -155,6 +157,8 @@ def other_value(parameter: registry.ParameterCard) -> Any:
 
 AXES: dict[str, Any] = {"device": {"id": "gyro-a"}, "plant": {"model": "gyroscope_pair"}}
 """Settings of a bench for blocks of axes."""
+
+BANK = {"kind": "mmae"}
 
 
 def tables(family: str) -> Iterator[tuple[str, Any, dict[str, Any]]]:
@@ -175,6 +179,8 @@ def tables(family: str) -> Iterator[tuple[str, Any, dict[str, Any]]]:
                 yield "controller", block, {"controller": kind}
         elif family == "rate":
             yield "rate", block, {"rate": kind}
+        elif family == "supervise":
+            yield "supervisor", block, {"supervisor": kind, "diagnosers": {"kalman": BANK, "other": BANK}}
         else:
             several, name = {
                 "diagnose": ("diagnosers", "bank"),
@@ -201,6 +207,8 @@ def section_of(spec: Any, table: str) -> Any:
         return spec.sensors[spec.measuring]
     if table == "rate":
         return spec.generators["rate"]
+    if table == "supervisor":
+        return spec.supervisors["supervisor"]
     several, _, name = table.partition(".")
     return getattr(spec, several)[name] if name else getattr(spec, table)
 
@@ -231,7 +239,9 @@ def unreached(table: str, block: Any, base: dict[str, Any]) -> list[str]:
     return wrong
 
 
-@pytest.mark.parametrize("family", [*"reference plant sense control diagnose identify rate readout".split(), "own"])
+@pytest.mark.parametrize(
+    "family", [*"reference plant sense control diagnose supervise identify rate readout".split(), "own"]
+)
 def test_set_reaches_every_parameter(family):
     found = [*(own_tables() if family == "own" else tables(family))]
     assert found and [name for one in found for name in unreached(*one)] == []

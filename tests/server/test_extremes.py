@@ -22,6 +22,7 @@ PLACES = {
     "diagnose": ("diagnosers.mine", "kind"),
     "rate": ("rate", "kind"),
     "readout": ("readouts.mine", "kind"),
+    "supervise": ("supervisor", "kind"),
 }
 """The place of the blocks of a family in a scenario, and the field that chooses one."""
 

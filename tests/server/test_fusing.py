@@ -79,26 +79,26 @@ def test_a_bench_takes_the_code_that_another_process_has_compiled(live: Live) ->
     assert session.board.fuses and not session.board.unfused
     assert (session.events.last, session.status) == (events, status)
     live.advance(bench=bench, ticks=700)
-    assert len(session.board._table) == 2
+    assert len(session.board.walk.table) == 2
     assert session.board.digest() == straight(session.board.tick)
 
 
 def test_a_switch_while_the_code_is_compiled_loses_no_tick(live: Live, here: dict[str, Any]) -> None:
     bench, session = bench_of(live)
     live.advance(bench=bench, ticks=700)
-    at, rows, kinds = session.board.tick, len(session.board._table), []
+    at, rows, kinds = session.board.tick, len(session.board.walk.table), []
 
     def switched() -> None:
         if not kinds:
             kinds.append(live.command(bench, **SWITCH).json()["entry"]["kind"])
-            assert len(session.board._table) == rows > 2
+            assert len(session.board.walk.table) == rows > 2
             live.advance(bench=bench, ticks=400)
 
     here["meanwhile"] = switched
     look(live)
     assert session.board.tick == at + 400 and kinds == ["switch"]
     live.advance(bench=bench, ticks=700)
-    assert len(session.board._table) == 2
+    assert len(session.board.walk.table) == 2
     assert session.board.digest() == straight(session.board.tick, at, SWITCH)
 
 
@@ -129,5 +129,5 @@ def test_benches_with_the_same_blocks_share_the_code(live: Live, here: dict[str,
     sessions = [bench_of(live)[1] for _ in range(2)]
     look(live)
     assert here["calls"] <= 2 and not any(session.board.unfused for session in sessions)
-    first, second = ([part.segment for part in session.board._parts] for session in sessions)
+    first, second = ([part.segment for part in session.board.walk.parts] for session in sessions)
     assert first == second and code_of(first[0].steps)

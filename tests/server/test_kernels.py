@@ -129,7 +129,7 @@ def test_benches_go_on_with_code_for_this_processor_once_it_is_compiled(live, mo
     board = live.service.benches.get(bench).board
 
     def addresses() -> set[int]:
-        return {address for one in (board, *board.twins.values()) for address in one._table[:, 0]}
+        return {address for one in (board, *board.twins.values()) for address in one.walk.table[:, 0]}
 
     async def compiled() -> None:
         assert addresses() == before, "it did not wait"

@@ -71,7 +71,7 @@ class StepsPair(TwinPair):
 
     def _run_board(self) -> None:
         board, wiring, nothing = self.board, self.board.wiring, np.zeros((TICKS, 0))
-        arrays = board._table, wiring.p, wiring.s, wiring.w, wiring.io
+        arrays = board.walk.table, wiring.p, wiring.s, wiring.w, wiring.io
         watches = np.zeros((0, 3))
         program.run(TICKS, 1, board.dt_ms, *arrays, nothing, nothing, fold.begin(0), wiring.trip, watches)
 

@@ -139,17 +139,19 @@ def test_every_parameter_that_may_change_changes_a_fused_board_as_it_changes_the
 def test_the_rows_of_a_segment_run_until_its_code_is_loaded_and_then_are_one_row() -> None:
     board = make(base=RICH)
     do(board, {"fault": "added_mass", "severity": 0.05})
-    rows = len(board._table)
+    rows = len(board.walk.table)
     board.fuse()
-    board._parts = [part._replace(segment=part.segment and SharedSegment(part.segment.steps)) for part in board._parts]
+    board.walk.parts = [
+        part._replace(segment=part.segment and SharedSegment(part.segment.steps)) for part in board.walk.parts
+    ]
     board._join()
-    assert len(board._table) == rows and len(board.unfused) == 2
+    assert len(board.walk.table) == rows and len(board.unfused) == 2
     first, second = board.unfused
     board.advance(10)
     second.load(code_of(second.steps))
-    assert len(board._table) == rows, "it takes code at a tick edge of its own"
+    assert len(board.walk.table) == rows, "it takes code at a tick edge of its own"
     board.advance(10)
-    assert len(board._table) == rows - len(second.steps) + 1 and board.unfused == [first]
+    assert len(board.walk.table) == rows - len(second.steps) + 1 and board.unfused == [first]
     straight = make(base=RICH, commands=[{"fault": "added_mass", "severity": 0.05}])
     straight.advance(20)
     same(straight, board)
@@ -157,12 +159,12 @@ def test_the_rows_of_a_segment_run_until_its_code_is_loaded_and_then_are_one_row
 
 def test_no_fault_and_no_switch_makes_another_segment() -> None:
     board = load(make(base=RICH))
-    before = [part.segment for part in board._parts]
+    before = [part.segment for part in board.walk.parts]
     for command in COMMANDS[:7]:
         do(board, command)
         board.advance(5)
-    assert [part.segment for part in board._parts if part.segment] == before
-    assert {len(part.segment.steps) for part in board._parts if part.segment} == {3, len(board._running) - 3}
+    assert [part.segment for part in board.walk.parts if part.segment] == before
+    assert {len(part.segment.steps) for part in board.walk.parts if part.segment} == {3, len(board.walk.running) - 3}
 
 
 def test_boards_share_a_segment_which_ends_with_the_last_of_them() -> None:
@@ -197,8 +199,8 @@ def test_a_unit_of_a_document_runs_by_itself() -> None:
     block: Any = type("Own", (board.wiring.instances[row].block,), {"text": "a unit"})
     board.wiring.instances[row] = board.wiring.instances[row]._replace(block=block)
     board.fuse()
-    alone = [part for part in board._parts if part.segment is None]
-    assert [board._running[part.rows] for part in alone] == [[row]]
+    alone = [part for part in board.walk.parts if part.segment is None]
+    assert [board.walk.running[part.rows] for part in alone] == [[row]]
 
 
 def test_an_uncompiled_board_does_not_fuse() -> None:
@@ -217,7 +219,7 @@ def test_twins_fuse_too() -> None:
     for ticks in (100, 60):
         step(boards, ticks)
     boards[1] = Board.restore(boards[1].checkpoint())  # with two faults, whose rows are by themselves
-    assert all(twin.fuses and len(twin._table) == 4 for twin in boards[1].twins.values())
+    assert all(twin.fuses and len(twin.walk.table) == 4 for twin in boards[1].twins.values())
     for ticks in (200, 60):
         step(boards, ticks)
     same(*boards)

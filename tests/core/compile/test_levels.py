@@ -164,12 +164,12 @@ def test_a_board_goes_on_with_other_code_from_a_tick_edge_and_no_bit_differs(mon
         monkeypatch.setattr(code, name, type(getattr(code, name))())
     other.renew()
     play(other, 150)
-    before = other._table[:, 0].copy()
+    before = other.walk.table[:, 0].copy()
     assert code.borrowed == {piece.name for piece in pieces} and code.compiled_here == []
     monkeypatch.setattr(kernel_cache, "_shelves", real)
     code.renew()
     other.renew()
-    assert len({*other._table[:, 0]} - {*before}) == len({*before} - {*other._table[:, 0]}) == len(pieces)
+    assert len({*other.walk.table[:, 0]} - {*before}) == len({*before} - {*other.walk.table[:, 0]}) == len(pieces)
     play(other, 250)
     assert other.digest() == straight.digest() and inner_digest(other) == inner_digest(straight)
 

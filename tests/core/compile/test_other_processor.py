@@ -52,8 +52,8 @@ def boards() -> dict[str, Board]:
 
 def numbers_of(board: Board, order: list[type]) -> bytes:
     """Return a board as the program reads it."""
-    wiring, table = board.wiring, board._table.copy()
-    table[:, program.ADDRESS] = [order.index(wiring.instances[row].block) for row in board._running]
+    wiring, table = board.wiring, board.walk.table.copy()
+    table[:, program.ADDRESS] = [order.index(wiring.instances[row].block) for row in board.walk.running]
     arrays = wiring.p, wiring.s, wiring.w, wiring.io
     head = [len(table), *map(len, arrays), board.tick, TICKS, EVERY]
     parts = [np.array(head, np.int64), np.array([board.dt_ms]), table, *arrays]
@@ -85,11 +85,11 @@ def test_all_steps_give_the_bits_of_this_processor(tmp_path):
         dict.fromkeys(
             board.wiring.instances[row].block
             for board in found.values()
-            for row in board._running
+            for row in board.walk.running
             if board.wiring.instances[row].block not in order
         )
     )
-    run = {board.wiring.instances[row].block for board in found.values() for row in board._running}
+    run = {board.wiring.instances[row].block for board in found.values() for row in board.walk.running}
     assert {block_of(name) for name in found} <= run
     (tmp_path / "boards").write_bytes(b"".join(numbers_of(board, order) for board in found.values()))
     path = built(tmp_path, order)

@@ -43,7 +43,7 @@ def source_of(family: str, name: str) -> str:
     return (ROOT / "core" / family / f"{name}.py").read_text("utf-8")
 
 
-FAMILIES = ("control", "reference", "faults", "sense", "diagnose", "identify", "readout")
+FAMILIES = ("control", "reference", "faults", "sense", "diagnose", "supervise", "identify", "readout")
 LIBRARY = [(family, name) for family in FAMILIES for name in registry.blocks(family)]
 
 

@@ -76,6 +76,7 @@ export function instances(
     ...Object.keys(bench.diagnosers)
       .filter(ofTheBoard)
       .map((id) => single(`diagnosers.${id}`, "Diagnosis", "diagnose", text(`diagnosers.${id}`, "kind", "mmae"))),
+    ...(parameters.supervisor ? [single("supervisor", "Supervisor", "supervise", text("supervisor", "kind", ""))] : []),
     ...Object.entries((parameters.readouts ?? {}) as Record<string, { kind?: string }>).map(([id, { kind = "" }]) =>
       single(`readouts.${id}`, "Read-out", "readout", kind),
     ),

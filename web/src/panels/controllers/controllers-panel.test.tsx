@@ -106,6 +106,29 @@ it("has a waveform only while the controller that drives reads it", async () => 
   expect(screen.getByText("Duty")).toBeVisible();
 });
 
+it("shows what the supervisor has concluded, its last act and why", async () => {
+  const { board, user } = await mountPanel({ ...bench, supervisor: null });
+  expect(screen.queryByRole("group", { name: "Supervisor" })).not.toBeInTheDocument();
+  const now = { kind: "switching", diagnoser: "kalman", verdict: "healthy", acting: "", held_ms: 2.5, dead_ms: 0.4 };
+  board.status({ supervisor: { ...now, acts: 0, last_act: null } });
+  const panel = group("Supervisor");
+  expect(panel.getByText("kalman has named healthy for 2.5 ms.")).toBeVisible();
+  expect(panel.getByText("Nothing counts for another 400 µs.")).toBeVisible();
+  expect(panel.getByRole("status")).toHaveTextContent("It has not acted.");
+  const last_act = { tick: 400, text: "switch to pid", reason: "kalman has named m+5 for 1 ms, weight 0.998" };
+  const acted = { ...now, verdict: "none fits", acting: "m+5", dead_ms: 0, acts: 2, last_act };
+  board.status({ supervisor: acted });
+  expect(
+    panel.getByText(/^kalman has named no hypothesis that fits for 2\.5.ms\. It acted on mass \+5.% last\.$/),
+  ).toBeVisible();
+  expect(panel.queryByText(/Nothing counts/)).not.toBeInTheDocument();
+  expect(panel.getByRole("status")).toHaveTextContent(
+    /^Last act, at .*: switch to pid, because kalman has named m\+5 for 1 ms, weight 0\.998\. 2 acts so far\.$/,
+  );
+  await user.click(screen.getByRole("button", { name: "Parameters of the supervisor" }));
+  expect(useView.getState().card).toBe("supervisor");
+});
+
 it("says beside an estimate that is not trusted that it is not", async () => {
   const { board } = await mountPanel(gyroscope.bench);
   board.frame({ "adaptive_rate.rate": () => 12, "adaptive_rate.trusted": () => 0 }, { head: 400 });

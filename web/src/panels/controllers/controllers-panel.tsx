@@ -13,6 +13,7 @@ import { useInstances } from "../card/instances";
 import { useLiveValues } from "../schematic/use-live-values";
 import { GeneratorForm } from "./generator-form";
 import { overridden, slotTitle } from "./slots";
+import { Supervisor } from "./supervisor";
 
 /** Outputs with a number beside the name of a controller; the first existing one is shown. */
 const TOLD = ["rate", "amplitude", "voltage"];
@@ -25,6 +26,7 @@ export function ControllersPanel() {
   const slots = useBench(useShallow((s) => s.bench?.slots));
   const controllers = useBench((s) => s.bench?.controllers);
   const signals = useBench((s) => s.bench?.signals);
+  const supervised = useBench((s) => !!s.bench?.supervisor);
   const { block, blocks } = useCatalog();
   const told = useMemo(() => {
     const names = new Set(signals?.map((s) => s.name));
@@ -48,19 +50,7 @@ export function ControllersPanel() {
         const taken = overridden(slot, slots, block);
         return (
           <Slot key={slot} title={slotTitle(slot)}>
-            <Button
-              pos="absolute"
-              top={-24}
-              right={0}
-              size="compact-xs"
-              variant="subtle"
-              onClick={() => {
-                useView.setState({ card: `controllers.${active}` });
-                showPanel("card");
-              }}
-            >
-              Parameters
-            </Button>
+            <Parameters of={`controllers.${active}`} />
             <Radio.Group
               label={slotTitle(slot)}
               labelProps={{ className: "visually-hidden" }}
@@ -104,12 +94,38 @@ export function ControllersPanel() {
           </Slot>
         );
       })}
+      {supervised && (
+        <Slot title="Supervisor">
+          <Parameters of="supervisor" label="Parameters of the supervisor" />
+          <Supervisor />
+        </Slot>
+      )}
       {outside.map((instance) => (
         <Slot key={instance.id} title={instance.title}>
           <GeneratorForm instance={instance} />
         </Slot>
       ))}
     </section>
+  );
+}
+
+/** The way to the card of a block. */
+function Parameters({ of, label }: { of: string; label?: string }) {
+  return (
+    <Button
+      pos="absolute"
+      top={-24}
+      right={0}
+      size="compact-xs"
+      variant="subtle"
+      aria-label={label}
+      onClick={() => {
+        useView.setState({ card: of });
+        showPanel("card");
+      }}
+    >
+      Parameters
+    </Button>
   );
 }
 
