@@ -3397,6 +3397,8 @@ export interface components {
             /** @description The change that redo makes again */
             redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
+            /** @description The supervisor, if the bench has one */
+            supervisor?: components["schemas"]["SupervisorStatus"] | null;
             /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
@@ -8423,6 +8425,57 @@ export interface components {
             hidden: components["schemas"]["Fact"][];
         };
         /**
+         * SupervisorAct
+         * @description An act of the supervisor.
+         */
+        SupervisorAct: {
+            /** Tick */
+            tick: number;
+            /**
+             * Text
+             * @description What it did, in words
+             */
+            text: string;
+            /** Reason */
+            reason: string;
+        };
+        /**
+         * SupervisorStatus
+         * @description The supervisor now: its verdict, and its last act.
+         */
+        SupervisorStatus: {
+            /** Kind */
+            kind: string;
+            /** Diagnoser */
+            diagnoser: string;
+            /**
+             * Verdict
+             * @description Hypothesis that the weights name now; 'none fits', or empty without a verdict
+             */
+            verdict: string;
+            /**
+             * Acting
+             * @description Verdict that was acted on last, in the same words
+             */
+            acting: string;
+            /**
+             * Held Ms
+             * @description Time for which the verdict has lasted; null: it has no verdict
+             */
+            held_ms: number | null;
+            /**
+             * Dead Ms
+             * @description Time left in which nothing counts; null: it has no such time
+             */
+            dead_ms: number | null;
+            /**
+             * Acts
+             * @description Acts so far
+             */
+            acts: number;
+            last_act: components["schemas"]["SupervisorAct"] | null;
+        };
+        /**
          * SweepList
          * @description Campaigns, newest first.
          */
@@ -9607,6 +9660,11 @@ export interface components {
             redo?: components["schemas"]["Undoable"] | null;
             trip: components["schemas"]["Trip"] | null;
             /**
+             * @description The supervisor, if the bench has one
+             * @default null
+             */
+            supervisor?: components["schemas"]["SupervisorStatus"] | null;
+            /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
              */
@@ -9855,6 +9913,26 @@ export interface components {
              * @enum {string}
              */
             kind: "adrc";
+            /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
             /**
              * @description omega_c over w0
              * @default 1
@@ -10498,6 +10576,16 @@ export interface components {
              */
             kind: "consistency";
             /**
+             * @description samples with the same one left
+             * @default 50
+             */
+            isolated_after?: number;
+            /**
+             * @description samples with none left
+             * @default 200
+             */
+            unknown_after?: number;
+            /**
              * @description the models among which the diagnoser chooses
              * @default [
              *       {
@@ -10586,16 +10674,6 @@ export interface components {
             /** @description tone; the reference's unless given, Hz */
             tone_hz?: number | null;
             /**
-             * @description samples with the same one left
-             * @default 50
-             */
-            isolated_after?: number;
-            /**
-             * @description samples with none left
-             * @default 200
-             */
-            unknown_after?: number;
-            /**
              * @description ticks of the board between two samples of the block
              * @default 1
              */
@@ -10663,7 +10741,7 @@ export interface components {
             every?: number;
         };
         /** Controller */
-        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
+        Controller: components["schemas"]["AdaptiveRateController"] | components["schemas"]["AdrcController"] | components["schemas"]["ForceToRebalanceController"] | components["schemas"]["GainAdaptationController"] | components["schemas"]["HInfinityController"] | components["schemas"]["IndirectMracController"] | components["schemas"]["LqgController"] | components["schemas"]["MimoAdaptiveController"] | components["schemas"]["MracController"] | components["schemas"]["MracVelocityController"] | components["schemas"]["MultipleModelController"] | components["schemas"]["OpenLoopController"] | components["schemas"]["OpenLoopRateController"] | components["schemas"]["PidController"] | components["schemas"]["ResonantController"] | components["schemas"]["SelfSlidingController"] | components["schemas"]["SenseAxisSyncController"] | components["schemas"]["SlidingObserverController"] | components["schemas"]["StvscController"] | components["schemas"]["VscController"] | components["schemas"]["VsmrcController"] | components["schemas"]["WholeAngleController"];
         /**
          * CusumDiagnoser
          * @description Cumulative sums (CUSUM): Page's test of each fault against the healthy device, the first hypothesis.
@@ -10857,7 +10935,7 @@ export interface components {
             printed?: components["schemas"]["PrintedFigures"] | null;
         };
         /** Diagnoser */
-        Diagnoser: components["schemas"]["AnchoredDiagnoser"] | components["schemas"]["ArxBankDiagnoser"] | components["schemas"]["AxesBankDiagnoser"] | components["schemas"]["ConsistencyDiagnoser"] | components["schemas"]["CusumDiagnoser"] | components["schemas"]["FreeBanksDiagnoser"] | components["schemas"]["ImmDiagnoser"] | components["schemas"]["LockInDiagnoser"] | components["schemas"]["LockInGlrDiagnoser"] | components["schemas"]["MmaeDiagnoser"] | components["schemas"]["MovingBankDiagnoser"] | components["schemas"]["ReferenceBanksDiagnoser"] | components["schemas"]["RegionsDiagnoser"] | components["schemas"]["ReseedDiagnoser"] | components["schemas"]["SelfTuningDiagnoser"] | components["schemas"]["TwoOutputDiagnoser"];
+        Diagnoser: components["schemas"]["AnchoredDiagnoser"] | components["schemas"]["ArxBankDiagnoser"] | components["schemas"]["AxesBankDiagnoser"] | components["schemas"]["ConsistencyDiagnoser"] | components["schemas"]["CusumDiagnoser"] | components["schemas"]["EkfDiagnoser"] | components["schemas"]["FreeBanksDiagnoser"] | components["schemas"]["ImmDiagnoser"] | components["schemas"]["LockInDiagnoser"] | components["schemas"]["LockInGlrDiagnoser"] | components["schemas"]["MmaeDiagnoser"] | components["schemas"]["MovingBankDiagnoser"] | components["schemas"]["ReferenceBanksDiagnoser"] | components["schemas"]["RegionsDiagnoser"] | components["schemas"]["ReseedDiagnoser"] | components["schemas"]["SelfTuningDiagnoser"] | components["schemas"]["TwoOutputDiagnoser"];
         /**
          * DrawnGyroscope
          * @description Data of a gyroscope in addition to the drawing of a comb resonator, which gives all the rest.
@@ -10935,6 +11013,177 @@ export interface components {
              * @enum {string}
              */
             kind?: "held" | "analogue";
+        };
+        /**
+         * EkfDiagnoser
+         * @description Extended Kalman filter (EKF): Places each hypothesis in the plane of spring and damper, and compares it with the estimate there.
+         */
+        EkfDiagnoser: {
+            /**
+             * @description Extended Kalman filter (EKF): Places each hypothesis in the plane of spring and damper, and compares it with the estimate there. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "ekf";
+            /**
+             * @description the models among which the diagnoser chooses
+             * @default [
+             *       {
+             *         "name": "healthy",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+5",
+             *         "mass": 1.05,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "m+10",
+             *         "mass": 1.1,
+             *         "stiffness": 1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+5",
+             *         "mass": 1,
+             *         "stiffness": 1.05,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "k+10",
+             *         "mass": 1,
+             *         "stiffness": 1.1,
+             *         "damping": 1,
+             *         "gain": 1
+             *       },
+             *       {
+             *         "name": "b+30",
+             *         "mass": 1,
+             *         "stiffness": 1,
+             *         "damping": 1.3,
+             *         "gain": 1
+             *       }
+             *     ]
+             */
+            hypotheses?: components["schemas"]["Hypothesis"][];
+            /**
+             * @description samples with the same one left
+             * @default 50
+             */
+            isolated_after?: number;
+            /**
+             * @description samples with none left
+             * @default 200
+             */
+            unknown_after?: number;
+            /**
+             * @description rms by which the spring may wander in 1 ms, over nominal
+             * @default 0.01
+             */
+            stiffness_walk?: number;
+            /**
+             * @description rms by which the damper may wander in 1 ms, over nominal
+             * @default 0.03
+             */
+            damping_walk?: number;
+            /**
+             * @description assumed noise on the voltage, rms per tick, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description uncertainty of the spring at the start, over nominal
+             * @default 0.3
+             */
+            initial_stiffness_std?: number;
+            /**
+             * @description uncertainty of the damper at the start, over nominal
+             * @default 0.3
+             */
+            initial_damping_std?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which the factors stay as they are, V
+             * @default 0.01
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description chance that the test calls a true hypothesis false
+             * @default 0.001
+             */
+            significance?: number;
+            /** @description tone; the reference's unless given, Hz */
+            tone_hz?: number | null;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * EkfIdentifier
+         * @description Extended Kalman filter (EKF): Extended Kalman filter of `(x,\dot x,\kappa,\delta)` (Jazwinski 1970, 8.3; Ljung 1979).
+         */
+        EkfIdentifier: {
+            /**
+             * @description Extended Kalman filter (EKF): Extended Kalman filter of `(x,\dot x,\kappa,\delta)` (Jazwinski 1970, 8.3; Ljung 1979). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "ekf";
+            /**
+             * @description rms by which the spring may wander in 1 ms, over nominal
+             * @default 0.01
+             */
+            stiffness_walk?: number;
+            /**
+             * @description rms by which the damper may wander in 1 ms, over nominal
+             * @default 0.03
+             */
+            damping_walk?: number;
+            /**
+             * @description assumed noise on the voltage, rms per tick, V
+             * @default 0.01
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description uncertainty of the spring at the start, over nominal
+             * @default 0.3
+             */
+            initial_stiffness_std?: number;
+            /**
+             * @description uncertainty of the damper at the start, over nominal
+             * @default 0.3
+             */
+            initial_damping_std?: number;
+            /**
+             * @description drive (rms over the shuttle's own memory) below which the factors stay as they are, V
+             * @default 0.01
+             */
+            least_drive_v?: number;
+            /**
+             * @description uncertainty of the displacement at the start, µm
+             * @default 1
+             */
+            initial_std_um?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
         };
         /**
          * Environment
@@ -11071,6 +11320,52 @@ export interface components {
              * @default
              */
             note?: string;
+        };
+        /**
+         * FaultToleranceStudy
+         * @description Fault tolerance of laws
+         */
+        FaultToleranceStudy: {
+            /**
+             * @description Fault tolerance of laws (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "fault_tolerance";
+            /**
+             * @description length of a run; the fault comes after a quarter
+             * @default 2400
+             */
+            samples?: number;
+            /**
+             * @description seeds of each case, starting at the seed of the bench
+             * @default 1
+             */
+            runs?: number;
+            /**
+             * @description pole of the PID over w0
+             * @default 1.3
+             */
+            pole?: number;
+            /**
+             * @description feed-forward of the PID
+             * @default 1
+             */
+            feedforward?: number;
+        };
+        /**
+         * FaultyDevice
+         * @description A device of the comparison: the faults it has from the start.
+         */
+        FaultyDevice: {
+            /** @description its name in figures */
+            name: string;
+            /**
+             * @description severity of each fault
+             * @default {}
+             */
+            faults?: {
+                [key: string]: number;
+            };
         };
         /**
          * FlopsStudy
@@ -11693,6 +11988,32 @@ export interface components {
             drive_amplitude_um?: number;
         };
         /**
+         * HInfinityController
+         * @description H-infinity loop shaping: Loop shaping by normalised coprime factors (McFarlane and Glover 1992; Skogestad and Postlethwaite 2005, 9.4).
+         */
+        HInfinityController: {
+            /**
+             * @description H-infinity loop shaping: Loop shaping by normalised coprime factors (McFarlane and Glover 1992; Skogestad and Postlethwaite 2005, 9.4). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "h_infinity";
+            /**
+             * @description loop gain W at zero frequency before the design
+             * @default 10
+             */
+            weight?: number;
+            /**
+             * @description bound of the norm over the least of all controllers
+             * @default 1.1
+             */
+            above_least?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * IdealSensor
          * @description Ideal sensor: Displacement plus white noise, rounded by the converter, `z_i=q\,[(x_i+v_i)/q]`.
          */
@@ -11729,7 +12050,7 @@ export interface components {
             every?: number;
         };
         /** Identifier */
-        Identifier: components["schemas"]["AdaptiveForgettingIdentifier"] | components["schemas"]["ExcitationIdentifier"] | components["schemas"]["GradientIdentifier"] | components["schemas"]["LeastSquaresIdentifier"] | components["schemas"]["RecursiveLeastSquaresIdentifier"];
+        Identifier: components["schemas"]["AdaptiveForgettingIdentifier"] | components["schemas"]["EkfIdentifier"] | components["schemas"]["ExcitationIdentifier"] | components["schemas"]["GradientIdentifier"] | components["schemas"]["LeastSquaresIdentifier"] | components["schemas"]["RecursiveLeastSquaresIdentifier"];
         /**
          * ImmDiagnoser
          * @description Interacting multiple models (IMM): Kalman filters that exchange their states, because the device may change from one hypothesis to another.
@@ -11937,6 +12258,51 @@ export interface components {
             ranges: {
                 [key: string]: components["schemas"]["Range"];
             };
+        };
+        /**
+         * Law
+         * @description A controller of the comparison.
+         */
+        Law: {
+            /** @description its name in figures */
+            name: string;
+            /** @description the controller, as a scenario has it */
+            controller: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * LawsStudy
+         * @description Controllers compared
+         */
+        LawsStudy: {
+            /**
+             * @description Controllers compared (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "laws";
+            /**
+             * @description the controllers
+             * @default []
+             */
+            laws?: components["schemas"]["Law"][];
+            /**
+             * @description the devices
+             * @default []
+             */
+            faults?: components["schemas"]["FaultyDevice"][];
+            /**
+             * @description noise of the sensor, µm
+             * @default [
+             *       0
+             *     ]
+             */
+            noise_um?: number[];
+            /**
+             * @description length of a run
+             * @default 4000
+             */
+            samples?: number;
         };
         /**
          * LeastSquaresIdentifier
@@ -12270,6 +12636,26 @@ export interface components {
              * @enum {string}
              */
             kind: "lqg";
+            /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
             /**
              * @description root of the cost of a volt, µm/V
              * @default 0.03
@@ -12755,6 +13141,45 @@ export interface components {
             every?: number;
         };
         /**
+         * MultipleModelController
+         * @description Multiple models (MMAC): An LQG for each hypothesis of a diagnoser, `u=\sum_ip_iu_i`, or the law of the winner (Athans 1977).
+         */
+        MultipleModelController: {
+            /**
+             * @description Multiple models (MMAC): An LQG for each hypothesis of a diagnoser, `u=\sum_ip_iu_i`, or the law of the winner (Athans 1977). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "multiple_model";
+            /**
+             * @description root of the cost of a volt, µm/V
+             * @default 0.03
+             */
+            voltage_cost_um_v?: number;
+            /**
+             * @description assumed noise on the voltage, rms per sample, V
+             * @default 1
+             */
+            process_noise_v?: number;
+            /** @description assumed sensor noise; the sensor's own unless given, µm */
+            sensor_noise_um?: number | null;
+            /**
+             * @description diagnoser whose weights count, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description all laws by their weights, or the law of the winner
+             * @default blend
+             * @enum {string}
+             */
+            combine?: "blend" | "switch";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * NoiseRate
          * @description Constant rate with noise: Constant rate with noise of the tactical grade, `\Omega(t)=\Omega_0+\Omega_n`.
          */
@@ -12937,6 +13362,11 @@ export interface components {
              */
             periods?: number;
         };
+        /**
+         * OwnBlock
+         * @description A block of a unit of your own, whose parameters its text declares.
+         */
+        OwnBlock: Record<string, never>;
         /**
          * OwnUnit
          * @description A unit of your own.
@@ -13936,6 +14366,26 @@ export interface components {
              */
             kind: "resonant";
             /**
+             * @description mass that the law assumes, over nominal
+             * @default 1
+             */
+            mass_ratio?: number;
+            /**
+             * @description stiffness that the law assumes, over nominal
+             * @default 1
+             */
+            stiffness_ratio?: number;
+            /**
+             * @description damping that the law assumes, over nominal
+             * @default 1
+             */
+            damping_ratio?: number;
+            /**
+             * @description drive gain that the law assumes, over nominal
+             * @default 1
+             */
+            gain_ratio?: number;
+            /**
              * @description harmonics of the tone
              * @default 1
              */
@@ -13945,6 +14395,53 @@ export interface components {
              * @default 0.2
              */
             rate?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
+         * RetuningSupervisor
+         * @description Retune the model: Sets the device that a controller knows to the weighted estimate, `\hat\theta=\sum_i\bar p_i\theta_i`.
+         */
+        RetuningSupervisor: {
+            /**
+             * @description Retune the model: Sets the device that a controller knows to the weighted estimate, `\hat\theta=\sum_i\bar p_i\theta_i`. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "retuning";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description controller whose model is set
+             * @default lqg
+             */
+            controller?: string;
+            /**
+             * @description change of a factor that is worth a request
+             * @default 0.02
+             */
+            least_change?: number;
+            /**
+             * @description act while no hypothesis fits: hold sets nothing, follow sets the estimate all the same, safe trips
+             * @default follow
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "follow" | "safe";
             /**
              * @description ticks of the board between two samples of the block
              * @default 1
@@ -14015,6 +14512,7 @@ export interface components {
              * @default {
              *       "since_ms": 0,
              *       "tail_share": 0.25,
+             *       "steps": false,
              *       "beside": "",
              *       "estimation": false
              *     }
@@ -14079,6 +14577,8 @@ export interface components {
             diagnosers?: {
                 [key: string]: components["schemas"]["Diagnoser"];
             };
+            /** @description the supervisor, which acts on the verdict of a diagnoser */
+            supervisor?: components["schemas"]["SupervisorTable"] | components["schemas"]["OwnBlock"];
             /** @description read-outs of a gyroscope, each under a name of your own */
             readouts?: {
                 [key: string]: components["schemas"]["ReadOut"];
@@ -14144,6 +14644,70 @@ export interface components {
          * @description An id of the library.
          */
         ScenarioId: string;
+        /**
+         * ScheduleRow
+         * @description The values of a hypothesis.
+         */
+        ScheduleRow: {
+            /** @description name of the hypothesis */
+            name: string;
+            /** @description values by dotted path */
+            set: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * SchedulingSupervisor
+         * @description Schedule parameters: Sets the parameters that the table has for the hypothesis that the diagnoser names: scheduled gains.
+         */
+        SchedulingSupervisor: {
+            /**
+             * @description Schedule parameters: Sets the parameters that the table has for the hypothesis that the diagnoser names: scheduled gains. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "scheduling";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description values of each hypothesis; a hypothesis without a row has the values of the healthy device
+             * @default []
+             */
+            schedule?: components["schemas"]["ScheduleRow"][];
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
         /**
          * Seeds
          * @description Noise seeds, ``"A:B"`` with both ends, the same for every point, so that points differ by their values.
@@ -14427,6 +14991,53 @@ export interface components {
         /** Sensor */
         Sensor: components["schemas"]["CapacitiveSensor"] | components["schemas"]["IdealSensor"] | components["schemas"]["PeakValleySensor"] | components["schemas"]["PickOffSensor"] | components["schemas"]["QuadratureSensor"] | components["schemas"]["QuadratureKalmanSensor"] | components["schemas"]["SingleBeamSensor"];
         /**
+         * ShutdownSupervisor
+         * @description Shut down: Takes the outputs to their safe values, as a trip does, once the diagnoser names a fault (5.1.5: safe to fail).
+         */
+        ShutdownSupervisor: {
+            /**
+             * @description Shut down: Takes the outputs to their safe values, as a trip does, once the diagnoser names a fault (5.1.5: safe to fail). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "shutdown";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * SineRate
          * @description Sine of the rate: Rate that swings, `\Omega(t)=\Omega_0\sin(2\pi ft+\varphi)`.
          */
@@ -14668,6 +15279,32 @@ export interface components {
             drive?: "held" | "analogue";
         };
         /**
+         * SlidingObserverController
+         * @description Sliding-mode observer: Super-twisting observer of the velocity, with state feedback (Davila, Fridman and Levant 2005).
+         */
+        SlidingObserverController: {
+            /**
+             * @description Sliding-mode observer: Super-twisting observer of the velocity, with state feedback (Davila, Fridman and Levant 2005). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "sliding_observer";
+            /**
+             * @description bound of the unexplained acceleration, µm/ms²
+             * @default 100
+             */
+            bound_um_ms2?: number;
+            /**
+             * @description omega_c over w0
+             * @default 2
+             */
+            controller_bandwidth?: number;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+        };
+        /**
          * SquareReference
          * @description Square wave: Square wave, `r(t)=r_0\pm A`.
          */
@@ -14789,6 +15426,11 @@ export interface components {
              */
             tail_share?: number;
             /**
+             * @description errors of each step between faults, and the times to recover from them
+             * @default false
+             */
+            steps?: boolean;
+            /**
              * @description diagnoser over whose delays the delays of others are taken
              * @default
              */
@@ -14800,7 +15442,7 @@ export interface components {
             estimation?: boolean;
         };
         /** Study */
-        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
+        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FaultToleranceStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["LawsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
         /**
          * StvscController
          * @description Self-tuning VSC: Self-tuning variable structure control, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
@@ -14875,6 +15517,10 @@ export interface components {
              */
             every?: number;
         };
+        /** Supervisor */
+        Supervisor: components["schemas"]["RetuningSupervisor"] | components["schemas"]["SchedulingSupervisor"] | components["schemas"]["ShutdownSupervisor"] | components["schemas"]["SwitchingSupervisor"];
+        /** SupervisorTable */
+        SupervisorTable: components["schemas"]["Supervisor"];
         /**
          * SweepVariant
          * @description One of several alternatives, such as a controller or a set of diagnosers.
@@ -14921,6 +15567,65 @@ export interface components {
             start_hz?: number | null;
             /** @description highest tone; twice the resonance unless given, Hz */
             stop_hz?: number | null;
+        };
+        /**
+         * SwitchingSupervisor
+         * @description Switch the controller: Switches to the controller of the hypothesis that the diagnoser names (5.1.6: diagnosis, then redesign).
+         */
+        SwitchingSupervisor: {
+            /**
+             * @description Switch the controller: Switches to the controller of the hypothesis that the diagnoser names (5.1.6: diagnosis, then redesign). (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "switching";
+            /**
+             * @description diagnoser whose verdict counts, by its id
+             * @default kalman
+             */
+            diagnoser?: string;
+            /**
+             * @description time for which a verdict must last, ms
+             * @default 1
+             */
+            hold_ms?: number;
+            /**
+             * @description time after an act, and after the start, in which nothing counts, ms
+             * @default 1
+             */
+            dead_ms?: number;
+            /**
+             * @description weight from which a hypothesis is the verdict
+             * @default 0.9
+             */
+            threshold?: number;
+            /**
+             * @description weight below which the hypothesis acted on is left
+             * @default 0.5
+             */
+            release?: number;
+            /**
+             * @description act while no hypothesis fits: hold leaves the loop as it is, nominal treats the device as healthy, safe trips
+             * @default hold
+             * @enum {string}
+             */
+            on_unknown?: "hold" | "nominal" | "safe";
+            /**
+             * @description controller of every hypothesis without one of its own
+             * @default lqg
+             */
+            nominal?: string;
+            /**
+             * @description controllers, by hypothesis
+             * @default {}
+             */
+            controllers?: {
+                [key: string]: string;
+            };
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
         };
         /**
          * Tone
@@ -15489,6 +16194,8 @@ export type StepGrade = components['schemas']['StepGrade'];
 export type StepPeriod = components['schemas']['StepPeriod'];
 export type StepView = components['schemas']['StepView'];
 export type StudentGame = components['schemas']['StudentGame'];
+export type SupervisorAct = components['schemas']['SupervisorAct'];
+export type SupervisorStatus = components['schemas']['SupervisorStatus'];
 export type SweepList = components['schemas']['SweepList'];
 export type SweepPoints = components['schemas']['SweepPoints'];
 export type SweepRun = components['schemas']['SweepRun'];
@@ -15574,10 +16281,14 @@ export type Device = components['schemas']['Device'];
 export type Diagnoser = components['schemas']['Diagnoser'];
 export type DrawnGyroscope = components['schemas']['DrawnGyroscope'];
 export type Drive = components['schemas']['Drive'];
+export type EkfDiagnoser = components['schemas']['EkfDiagnoser'];
+export type EkfIdentifier = components['schemas']['EkfIdentifier'];
 export type Environment = components['schemas']['Environment'];
 export type EstimatesStudy = components['schemas']['EstimatesStudy'];
 export type ExcitationIdentifier = components['schemas']['ExcitationIdentifier'];
 export type Expectation = components['schemas']['Expectation'];
+export type FaultToleranceStudy = components['schemas']['FaultToleranceStudy'];
+export type FaultyDevice = components['schemas']['FaultyDevice'];
 export type FlopsStudy = components['schemas']['FlopsStudy'];
 export type ForceToRebalanceController = components['schemas']['ForceToRebalanceController'];
 export type FreeBanksDiagnoser = components['schemas']['FreeBanksDiagnoser'];
@@ -15591,6 +16302,7 @@ export type Guard = components['schemas']['Guard'];
 export type GyroscopePairPlant = components['schemas']['GyroscopePairPlant'];
 export type GyroscopePlant = components['schemas']['GyroscopePlant'];
 export type GyroscopeTable = components['schemas']['GyroscopeTable'];
+export type HInfinityController = components['schemas']['HInfinityController'];
 export type IdealSensor = components['schemas']['IdealSensor'];
 export type Identifier = components['schemas']['Identifier'];
 export type ImmDiagnoser = components['schemas']['ImmDiagnoser'];
@@ -15598,6 +16310,8 @@ export type IndirectMracController = components['schemas']['IndirectMracControll
 export type JoinedRecordsStudy = components['schemas']['JoinedRecordsStudy'];
 export type KalmanGainsStudy = components['schemas']['KalmanGainsStudy'];
 export type LatinHypercube = components['schemas']['LatinHypercube'];
+export type Law = components['schemas']['Law'];
+export type LawsStudy = components['schemas']['LawsStudy'];
 export type LeastSquaresIdentifier = components['schemas']['LeastSquaresIdentifier'];
 export type LinearPlant = components['schemas']['LinearPlant'];
 export type LockInDiagnoser = components['schemas']['LockInDiagnoser'];
@@ -15611,11 +16325,13 @@ export type MovingBankDiagnoser = components['schemas']['MovingBankDiagnoser'];
 export type MracController = components['schemas']['MracController'];
 export type MracVelocityController = components['schemas']['MracVelocityController'];
 export type MultiSineReference = components['schemas']['MultiSineReference'];
+export type MultipleModelController = components['schemas']['MultipleModelController'];
 export type NoiseRate = components['schemas']['NoiseRate'];
 export type NonlinearPlant = components['schemas']['NonlinearPlant'];
 export type OpenLoopController = components['schemas']['OpenLoopController'];
 export type OpenLoopRateController = components['schemas']['OpenLoopRateController'];
 export type OutputsStudy = components['schemas']['OutputsStudy'];
+export type OwnBlock = components['schemas']['OwnBlock'];
 export type OwnUnit = components['schemas']['OwnUnit'];
 export type PackageEntry = components['schemas']['PackageEntry'];
 export type PeakValleySensor = components['schemas']['PeakValleySensor'];
@@ -15645,27 +16361,35 @@ export type ReferenceBanksDiagnoser = components['schemas']['ReferenceBanksDiagn
 export type RegionsDiagnoser = components['schemas']['RegionsDiagnoser'];
 export type ReseedDiagnoser = components['schemas']['ReseedDiagnoser'];
 export type ResonantController = components['schemas']['ResonantController'];
+export type RetuningSupervisor = components['schemas']['RetuningSupervisor'];
 export type Scenario = components['schemas']['Scenario'];
 export type ScenarioEvent = components['schemas']['ScenarioEvent'];
 export type ScenarioId = components['schemas']['ScenarioId'];
+export type ScheduleRow = components['schemas']['ScheduleRow'];
+export type SchedulingSupervisor = components['schemas']['SchedulingSupervisor'];
 export type Seeds = components['schemas']['Seeds'];
 export type SelfSlidingController = components['schemas']['SelfSlidingController'];
 export type SelfTuningDiagnoser = components['schemas']['SelfTuningDiagnoser'];
 export type SenseAxisSyncController = components['schemas']['SenseAxisSyncController'];
 export type SensingStudy = components['schemas']['SensingStudy'];
 export type Sensor = components['schemas']['Sensor'];
+export type ShutdownSupervisor = components['schemas']['ShutdownSupervisor'];
 export type SineRate = components['schemas']['SineRate'];
 export type SineReference = components['schemas']['SineReference'];
 export type SingleBeamSensor = components['schemas']['SingleBeamSensor'];
 export type SlavedLateralPlant = components['schemas']['SlavedLateralPlant'];
+export type SlidingObserverController = components['schemas']['SlidingObserverController'];
 export type SquareReference = components['schemas']['SquareReference'];
 export type StepRate = components['schemas']['StepRate'];
 export type StepReference = components['schemas']['StepReference'];
 export type Stretch = components['schemas']['Stretch'];
 export type Study = components['schemas']['Study'];
 export type StvscController = components['schemas']['StvscController'];
+export type Supervisor = components['schemas']['Supervisor'];
+export type SupervisorTable = components['schemas']['SupervisorTable'];
 export type SweepVariant = components['schemas']['SweepVariant'];
 export type SweptSineStudy = components['schemas']['SweptSineStudy'];
+export type SwitchingSupervisor = components['schemas']['SwitchingSupervisor'];
 export type Tone = components['schemas']['Tone'];
 export type TransferFunction = components['schemas']['TransferFunction'];
 export type TransferFunctionPlant = components['schemas']['TransferFunctionPlant'];
