@@ -33,7 +33,7 @@ def looking_on(board: Board) -> set[str]:
 def idle_blocks(board: Board, pending: PendingQueue, wants_estimates: bool) -> set[str]:
     """Return the blocks that nothing reads.
 
-    These are controllers that drive neither now nor by a command that waits, and weighted estimates that nobody wants.
+    These are controllers that drive neither now nor by a command that waits, and weighted estimates without a reader.
     """
     spec, wiring, named = board.spec, board.wiring, _named(pending)
     idle = {*spec.controllers} - {*spec.driving.values()} - named - _words(spec.document.get(SUPERVISOR, ""))

@@ -98,6 +98,8 @@ class _Fact:
         self._name = name
 
     def __get__(self, noting: Any, _: type) -> Any:
+        if noting is None:  # asked of the class, as units of a document are looked at
+            return self
         value = vars(noting)[self._name] = getattr(vars(noting)[""], self._name)
         return value
 

@@ -29,7 +29,7 @@ class Consequence(NamedTuple):
     reason: str
 
 
-class Requested(NamedTuple):
+class RequestedActs(NamedTuple):
     """The commands of a request, and its reason in words."""
 
     commands: list[Command]
@@ -43,7 +43,7 @@ def watched(spec: Spec, wiring: Wiring, watches: FloatArray) -> FloatArray:
     return np.vstack([watches, [[wiring.index[REQUEST], 1.0, 0.5]]])
 
 
-def take_request(spec: Spec, wiring: Wiring) -> Requested | None:
+def take_request(spec: Spec, wiring: Wiring) -> RequestedActs | None:
     """Return the request of the last tick that is not carried out yet, and reset it.
 
     Raises
@@ -64,7 +64,7 @@ def take_request(spec: Spec, wiring: Wiring) -> Requested | None:
 
     arguments = section.params, spec.context(), request, value
     commands = [parse_command(act) for act in block.acts(*arguments)]
-    return Requested([one for own in commands if (one := _left(spec, own))], block.reason(*arguments))
+    return RequestedActs([one for own in commands if (one := _left(spec, own))], block.reason(*arguments))
 
 
 def check(spec: Spec) -> None:

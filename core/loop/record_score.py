@@ -7,7 +7,7 @@ from typing import Any
 
 from core.block import Block, Context
 from core.diagnose.hypothesis import BankParams, names_of
-from core.loop.score import Score, ScoreTiming, VerdictPorts, count, nothing_counted, take_turns
+from core.loop.score import Score, ScoredPorts, ScoreTiming, count, nothing_counted, take_turns
 from core.ports import reads
 from core.record import Vector, tail
 
@@ -36,7 +36,7 @@ class RecordScore(Block):
 
         hypothesis: Vector = tail()
 
-    class Ports(VerdictPorts):
+    class Ports(ScoredPorts):
         """In addition the label."""
 
         label: float = reads("plant.label", "1", "index of the label, -1 for none")

@@ -48,7 +48,7 @@ class ScoreTiming(Record):
     limit: float
 
 
-class VerdictPorts(BlockPorts):
+class ScoredPorts(BlockPorts):
     """Probabilities of a bank in, the verdict out."""
 
     probability: Vector = reads("", "1", "probabilities of the bank")
@@ -118,7 +118,7 @@ class Score(Block):
         average: Vector = vector(LANE)
         confusion: Vector = tail()
 
-    class Ports(VerdictPorts):
+    class Ports(ScoredPorts):
         """In addition the true factors."""
 
         mass_scale: float = reads("effects.mass_scale", "1", "true mass over nominal")
@@ -184,7 +184,7 @@ def holds(h: Factors, x: Score.Ports) -> bool:
 
 
 @kernel
-def count(p: ScoreTiming, s: Score.State, x: VerdictPorts, n: int, truth: int) -> None:
+def count(p: ScoreTiming, s: Score.State, x: ScoredPorts, n: int, truth: int) -> None:
     """Compare the winner with the truth, and count."""
     winner = winner_of(x.probability, n)
     if not math.isfinite(x.probability[winner]):

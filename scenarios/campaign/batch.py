@@ -23,6 +23,7 @@ from core.board.stages import stages
 from core.compile.machine import WIDTH
 from core.errors import InputError
 from scenarios.campaign.outcome import RunOutcome, fault_of, odds_of, outcome, summed
+from scenarios.measure.estimation import estimation_metrics
 from scenarios.measure.metrics import measure
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
@@ -131,6 +132,8 @@ def _together(
         if came[lane]:
             scenario, board, trace = runs[number][0], boards.boards[lane], boards.trace(lane)
             metrics = measure(board, trace, scenario.head.metrics)
+            if scenario.asks_estimates:
+                metrics |= estimation_metrics(board)
             said = warned(scenario, board, told, trace)
             found[number] = summed(scenario, board, metrics, board.digest(), trace, said)
     elapsed = (time.perf_counter() - began) / len(chosen)

@@ -20,7 +20,7 @@ from scenarios.narrator.doings import MEASURED, MODEL, SCALES, TOLD, TRIPS, Doin
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import KINDS, Sentence
 from scenarios.narrator.settling import Settling
-from scenarios.narrator.verdicts import Turns, Verdicts
+from scenarios.narrator.verdicts import Verdicts, WinnerTurns
 
 PORTS = ("winner", "truth")
 """Ports of a diagnoser that are followed from tick to tick, and the ports that are read when it changes."""
@@ -104,17 +104,17 @@ class Narrator:
         self._samples.hide()
         return sorted(found, key=lambda said: (said.tick, KINDS.index(said.kind)))
 
-    def _changes(self, rows: Ticks) -> dict[str, Turns]:
+    def _changes(self, rows: Ticks) -> dict[str, WinnerTurns]:
         """Return the changes of the winners and truths."""
         values = rows.singles(self._columns, 0, rows.count)
         found, ends = np.empty(values.size, np.int64), np.empty(len(values), np.int64)
         self._last = self._last.copy()  # a copy of this continues independently
         count = _turns(values, self._last, found, ends)
-        changes, start = dict[str, Turns](), 0
+        changes, start = dict[str, WinnerTurns](), 0
         for name, own, end in zip(self._followed, values, ends.tolist() if count else [], strict=False):
             if end > start:
                 at, start = found[start:end], end
-                changes[name] = Turns((rows.first_tick + at).tolist(), own[at].astype(np.int64).tolist())
+                changes[name] = WinnerTurns((rows.first_tick + at).tolist(), own[at].astype(np.int64).tolist())
         return changes
 
     def tell(self) -> list[Sentence]:

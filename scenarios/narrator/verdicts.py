@@ -20,14 +20,14 @@ TURNS = int(HELD)
 """Verdicts in a row for one hypothesis after which it counts, by the rule of the score."""
 
 
-class Turns(NamedTuple):
+class WinnerTurns(NamedTuple):
     """Changes of a signal of whole numbers: their ticks, and the numbers from there on."""
 
     ticks: list[int]
     values: list[int]
 
 
-NEVER = Turns([], [])
+NEVER = WinnerTurns([], [])
 
 
 class Verdicts:
@@ -66,7 +66,7 @@ class Verdicts:
         self._changed: int | None = None
         self._missed: list[list[FloatArray]] = []
 
-    def look(self, samples: NarratorSignals, changes: Mapping[str, Turns]) -> Iterator[Sentence]:
+    def look(self, samples: NarratorSignals, changes: Mapping[str, WinnerTurns]) -> Iterator[Sentence]:
         """Tell the verdicts in the rows of now, by the changes of winner and truth."""
         if samples.first == 0:
             self._held = self._nominal
@@ -90,7 +90,7 @@ class Verdicts:
             if old is not None:
                 yield self._sentence(samples, last, old, next(one for one in reversed(truths) if one[0] <= last))
 
-    def _truths(self, samples: NarratorSignals, changes: Turns) -> Iterator[tuple[int, int, int | None]]:
+    def _truths(self, samples: NarratorSignals, changes: WinnerTurns) -> Iterator[tuple[int, int, int | None]]:
         """Return tick and value of each change of the truth, and when it changed last; the beginning is no change."""
         for tick, value in zip(*changes, strict=True):
             self._changed = tick if tick != samples.began else None

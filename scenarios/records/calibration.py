@@ -27,7 +27,7 @@ UNCERTAIN = {"mass": 0.02, "stiffness": 0.02, "damping": 0.1}
 
 
 @dataclass(frozen=True)
-class Estimate:
+class FittedNumber:
     """A number with its standard error."""
 
     value: float
@@ -45,9 +45,9 @@ class Calibration:
 
     Parameters
     ----------
-    mass, damping, stiffness : Estimate
+    mass, damping, stiffness : FittedNumber
         Over nominal, at the nominal force.
-    offset_um, delay_samples : Estimate
+    offset_um, delay_samples : FittedNumber
         Of the measured displacement; of the displacement behind the voltage.
     noise_um, quantum_um : float
         Standard deviation of a sample with its rounding; step of the converter, 0 where none is seen.
@@ -57,11 +57,11 @@ class Calibration:
         A sentence why the record does not fit the model; empty where it does.
     """
 
-    mass: Estimate
-    damping: Estimate
-    stiffness: Estimate
-    offset_um: Estimate
-    delay_samples: Estimate
+    mass: FittedNumber
+    damping: FittedNumber
+    stiffness: FittedNumber
+    offset_um: FittedNumber
+    delay_samples: FittedNumber
     noise_um: float
     quantum_um: float
     samples: int
@@ -104,7 +104,7 @@ def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: 
     )
 
 
-def _estimates(found: Fit, nominal: Oscillator) -> dict[str, Estimate]:
+def _estimates(found: Fit, nominal: Oscillator) -> dict[str, FittedNumber]:
     r"""Return the numbers of the fit as ratios to nominal, with standard errors to first order.
 
     At the nominal force the mass is :math:`m=F/g`, the damping :math:`a_1m` and the stiffness :math:`a_0m`.
@@ -116,12 +116,12 @@ def _estimates(found: Fit, nominal: Oscillator) -> dict[str, Estimate]:
     rows = {"mass": (0, 0, 0, -1, 0), "damping": (0, 1, 0, -1, 0), "stiffness": (1, 0, 0, -1, 0)}
     values = {"mass": mass, "damping": damping, "stiffness": stiffness}
     errors = {name: math.sqrt(_variance(np.array(row, float), found.covariance)) for name, row in rows.items()}
-    ratios = {name: Estimate(values[name], values[name] * errors[name]) for name in rows}
+    ratios = {name: FittedNumber(values[name], values[name] * errors[name]) for name in rows}
     sizes = np.sqrt(np.diag(found.covariance))
     return {
         **ratios,
-        "delay_samples": Estimate(found.delay, float(sizes[2])),
-        "offset_um": Estimate(found.offset, float(sizes[4])),
+        "delay_samples": FittedNumber(found.delay, float(sizes[2])),
+        "offset_um": FittedNumber(found.offset, float(sizes[4])),
     }
 
 
@@ -129,7 +129,7 @@ def _variance(row: Numbers, covariance: Numbers) -> float:
     return float(row @ covariance @ row)
 
 
-def _uncertain(estimates: dict[str, Estimate]) -> str:
+def _uncertain(estimates: dict[str, FittedNumber]) -> str:
     """Return the sentence for an input that cannot tell mass from stiffness."""
     for name, most in UNCERTAIN.items():
         one = estimates[name]

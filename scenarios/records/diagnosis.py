@@ -26,7 +26,7 @@ SHORTEST = 20
 
 
 @dataclass(frozen=True)
-class Verdict:
+class RecordVerdict:
     """A stretch of samples with one verdict: a hypothesis, `UNEXPLAINED` or `UNSURE`; its mean probability."""
 
     first: int
@@ -36,14 +36,14 @@ class Verdict:
 
 
 @dataclass
-class Diagnosis:
+class RecordDiagnosis:
     """The calibration, the scenario that plays the record, and the verdicts of each bank; none after a refusal."""
 
     record: MeasuredRecord
     calibration: Calibration
     bench: Scenario | None = None
     result: RunResult | None = field(default=None, repr=False)
-    verdicts: dict[str, list[Verdict]] = field(default_factory=dict)
+    verdicts: dict[str, list[RecordVerdict]] = field(default_factory=dict)
     shares: dict[str, dict[str, float]] = field(default_factory=dict)
     healthy: dict[str, str] = field(default_factory=dict)
 
@@ -59,7 +59,7 @@ def diagnose(
     first: int = 0,
     end: int | None = None,
     folder: RecordFolder | None = None,
-) -> Diagnosis:
+) -> RecordDiagnosis:
     """Return the diagnosis of a record.
 
     Parameters
@@ -79,11 +79,11 @@ def diagnose(
     end = max(record.samples // 4, 1) if end is None else end
     calibration = calibrate(record, scenario.spec.nominal, first, end)
     if calibration.refusal:
-        return Diagnosis(record, calibration)
+        return RecordDiagnosis(record, calibration)
     key = (folder or RecordFolder()).keep(record)
     bench = Scenario.load(on_record(scenario, record, key, calibration=calibration))
     result = run(bench, taps=True)
-    found = Diagnosis(record, calibration, bench, result)
+    found = RecordDiagnosis(record, calibration, bench, result)
     for name, section in bench.spec.diagnosers.items():
         if scored(section.block):
             words = _words(result, name, names_of(section.params))
@@ -98,7 +98,7 @@ def _healthy(params: Any) -> str:
     return next((one.name for one in hypotheses_of(params) if one.is_nominal), "")
 
 
-def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[Verdict]:
+def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[RecordVerdict]:
     """Return the verdicts of a bank, stretch by stretch; short ones belong to the stretch before."""
     probability = np.stack([loaded(result.signal(f"{name}.probability.{one}")) for one in hypotheses])
     winner, most = probability.argmax(axis=0), probability.max(axis=0)
@@ -106,7 +106,7 @@ def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[Verdict]
     index = np.where(most >= SURE, winner, len(hypotheses))
     index[loaded(result.signal(f"{name}.unexplained")) != 0.0] = len(hypotheses) + 1
     edges = np.flatnonzero(np.diff(index)) + 1
-    found: list[Verdict] = []
+    found: list[RecordVerdict] = []
     for first, end in zip([0, *edges.tolist()], [*edges.tolist(), len(index)], strict=True):
         word = words[index[first]]
         mean = float(most[first:end].mean())
@@ -114,13 +114,13 @@ def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[Verdict]
             last = found.pop()
             long = last.end - last.first
             mean = (last.probability * long + mean * (end - first)) / (long + end - first)
-            found.append(Verdict(last.first, end, last.verdict, mean))
+            found.append(RecordVerdict(last.first, end, last.verdict, mean))
         else:
-            found.append(Verdict(first, end, word, mean))
+            found.append(RecordVerdict(first, end, word, mean))
     return found
 
 
-def _shares(verdicts: list[Verdict], samples: int) -> dict[str, float]:
+def _shares(verdicts: list[RecordVerdict], samples: int) -> dict[str, float]:
     """Return the share of samples of each verdict, the largest first."""
     counted: dict[str, float] = {}
     for one in verdicts:
@@ -128,7 +128,7 @@ def _shares(verdicts: list[Verdict], samples: int) -> dict[str, float]:
     return dict(sorted(counted.items(), key=lambda entry: -entry[1]))
 
 
-def as_document(found: Diagnosis) -> dict[str, Any]:
+def as_document(found: RecordDiagnosis) -> dict[str, Any]:
     """Return a diagnosis as JSON can carry it."""
     calibration = found.calibration
     estimates = ("mass", "damping", "stiffness", "offset_um", "delay_samples")

@@ -26,7 +26,7 @@ DAMPINGS = (-1.0, 0.0, 1.0)
 DELAYS = (0.5, 2.5, 4.5, 6.5)
 """Starts of the search: logarithms of stiffness and damping over mass, over nominal, and delays in samples.
 
-No start is at a bound, which a search leaves with difficulty.
+No start is at a bound, because a search that begins there may stay there.
 """
 BEGUN = 600
 """Samples by which starts are compared."""

@@ -1,4 +1,4 @@
-"""Reasons against a mass, a damper and a spring: each check looks at one, and says in a sentence what it found."""
+"""Reasons against a mass, a damper and a spring: each check looks for one of them and has a sentence for it."""
 
 from __future__ import annotations
 

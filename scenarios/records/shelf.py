@@ -35,7 +35,7 @@ class RecordFolder:
         return Path(os.environ.get(FOLDER) or Path(home) / "combbench" / "records")
 
     def get(self, key: str) -> MeasuredRecord | None:
-        """Return a record; nothing when it is not here, or its file is not what it was."""
+        """Return a record; nothing when its file is absent or damaged."""
         if len(key) != 64 or set(key) - set(KEY):
             return None
         return _loaded(self.path / f"{key}.npz", key)

@@ -31,7 +31,7 @@ _VALUE = re.compile(r"invalid value '(.*?)'")
 
 @dataclass(frozen=True)
 class Form:
-    """How a text is written: separator, decimal sign, names and units, and how many lines stand before the numbers."""
+    """How a text is written: separator, decimal sign, names and units, and the count of lines before the numbers."""
 
     separator: str
     decimal: str
@@ -91,7 +91,7 @@ def _decoded(content: bytes) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """Return the first lines of a text, of which none may be too long."""
+    """Return the first lines of a text; refuse a line that is too long."""
     head = text[: LOOKED_AT * LONGEST_LINE].split("\n", LOOKED_AT)[:LOOKED_AT]
     for i, line in enumerate(head):
         if len(line) > LONGEST_LINE:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from core.errors import InputError
 from core.format import format_short
-from scenarios.records.diagnosis import UNEXPLAINED, UNSURE, Diagnosis, as_document, diagnose
 from server.cli.replay import BenchOption, FileArgument, MapOption, PairingOption, RateOption, read_file
 from server.cli.terminal import JsonOption, load, plainly, say, say_json
 from server.cli.units import UnitOption
+
+if TYPE_CHECKING:
+    from scenarios.records.diagnosis import RecordDiagnosis
 
 NO_FAULT, FAULT, REFUSED = 0, 1, 3
 MOST_UNEXPLAINED = 0.2
@@ -33,6 +35,8 @@ def diagnose_file(
     as_json: JsonOption = False,
 ) -> None:
     """Calibrate by a healthy stretch and diagnose; exit code 0: no fault, 1: a fault, 3: refused or unexplained."""
+    from scenarios.records.diagnosis import as_document, diagnose  # scipy: most commands do without it
+
     read = read_file(file, named, rate_khz, pairing)
     first, end = _stretch(healthy, read.record.samples)
     found = diagnose(read.record, load(scenario, units), first, end)
@@ -55,8 +59,10 @@ def _stretch(text: str | None, samples: int) -> tuple[int, int | None]:
         raise InputError(f"must be A:B, two samples, got {text!r}", "--healthy", "--healthy 0:2000") from None
 
 
-def _exit(found: Diagnosis) -> int:
+def _exit(found: RecordDiagnosis) -> int:
     """Return the exit code: the bank with the worst news decides."""
+    from scenarios.records.diagnosis import UNEXPLAINED, UNSURE
+
     if found.refusal:
         return REFUSED
     codes = [NO_FAULT]
@@ -66,8 +72,10 @@ def _exit(found: Diagnosis) -> int:
     return max(codes)
 
 
-def _text(found: Diagnosis) -> str:
+def _text(found: RecordDiagnosis) -> str:
     """Return the calibration and the verdicts as lines."""
+    from scenarios.records.diagnosis import UNEXPLAINED
+
     one = found.calibration
     lines = [f"calibrated by {one.samples} samples, half of them fitted, half of them tested:"]
     for name, unit in (

@@ -9,7 +9,6 @@ import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
-from scenarios.records.bench import on_record
 from scenarios.records.reading import MOST_BYTES, ReadRecord, read_record
 from scenarios.records.shelf import RecordFolder
 from scenarios.report.text import run_text
@@ -78,6 +77,8 @@ def replay(
     as_json: JsonOption = False,
 ) -> None:
     """Play a record of a real device: identifiers and diagnosers of a bench look at it. No controller can drive it."""
+    from scenarios.records.bench import on_record  # scipy: most commands do without it
+
     read = read_file(file, named, rate_khz, pairing)
     key = RecordFolder().keep(read.record)
     bench = Scenario.load(on_record(load(scenario, units), read.record, key, noise_um))

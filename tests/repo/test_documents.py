@@ -166,8 +166,9 @@ def test_documents_and_container_files_name_only_settings_that_exist(root: Path,
 
     texts = [*documents.values(), *((root / name).read_text() for name in ("Dockerfile", "compose.yaml"))]
     named = {name.lower() for text in texts for name in re.findall(rf"{PREFIX}(\w+)", text)}
-    # The folder of kernels is needed before the settings exist, the address by scripts; the seed is of the long suite.
-    assert named <= {*Settings.model_fields, "kernel_cache", "address", "test_seed"}
+    # The folders of kernels and records are needed before the settings exist, the address by scripts; the seed is of
+    # the long suite.
+    assert named <= {*Settings.model_fields, "kernel_cache", "records", "address", "test_seed"}
 
 
 @pytest.mark.long

@@ -144,7 +144,7 @@ def test_the_rows_of_a_segment_run_until_its_code_is_loaded_and_then_are_one_row
     board.walk.parts = [
         part._replace(segment=part.segment and SharedSegment(part.segment.steps)) for part in board.walk.parts
     ]
-    board._join()
+    board.walk._join()
     assert len(board.walk.table) == rows and len(board.unfused) == 2
     first, second = board.unfused
     board.advance(10)
@@ -182,7 +182,7 @@ def test_boards_share_a_segment_which_ends_with_the_last_of_them() -> None:
 
 
 def test_a_segment_is_named_by_its_steps_and_comes_through_a_pipe() -> None:
-    (first, *_), other = make(base=RICH)._parts or load(make(base=RICH))._parts, make(base=RICH)
+    (first, *_), other = make(base=RICH).walk.parts or load(make(base=RICH)).walk.parts, make(base=RICH)
     assert first.segment is not None
     steps = first.segment.steps
     assert pickle.loads(pickle.dumps(steps)) == steps

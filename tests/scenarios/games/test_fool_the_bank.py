@@ -23,7 +23,7 @@ def missed_in(seed: int, fault: str, severity: float) -> int:
     noises = Draws("fool-the-bank", seed).noise_seeds(10)
     assert len(set(noises)) == 10
     for noise in noises:
-        winner = run(scenario, noise, figures_only=True).trace["kalman.winner"]
+        winner = run(scenario, noise).trace["kalman.winner"]
         assert len(winner) == 4000
         missed += int((winner[3500:] == 0.0).sum()) > 250
     return missed

@@ -18,7 +18,7 @@ from scenarios.narrator.narrator import Narrator
 from scenarios.narrator.samples import NarratorSignals
 from scenarios.narrator.sentence import Sentence
 from scenarios.narrator.settling import Settling
-from scenarios.narrator.verdicts import Turns, Verdicts
+from scenarios.narrator.verdicts import Verdicts, WinnerTurns
 from scenarios.run import RunResult, build, run
 from tests.scenarios.narrator.random_bench import random_bench, told
 
@@ -303,7 +303,7 @@ def test_a_winner_that_flickers_costs_no_look_at_its_residuals() -> None:
     (name,) = bench.diagnosers
     verdicts = Verdicts(name, bench.diagnosers[name], 1, bench.dt_ms, alone=True)
     ticks = [*range(100, 5100, 3)]
-    changes = {f"{name}.winner": Turns(ticks, [at % 2 + 1 for at in range(len(ticks))])}
+    changes = {f"{name}.winner": WinnerTurns(ticks, [at % 2 + 1 for at in range(len(ticks))])}
     verdicts._held = 0
     assert [*verdicts.look(cast(NarratorSignals, Counted()), changes)] == []
     assert len(looks) == 2

@@ -90,7 +90,7 @@ def test_the_pid_is_the_best_of_its_family_on_the_healthy_device() -> None:
 
 def test_every_law_for_one_axis_is_in_the_table() -> None:
     named = {law["controller"]["kind"] for law in get(ID).document["study"]["laws"]}
-    assert named == set(Board(bench().base).spec.controllers) - {"gain_adaptation"}
+    assert named == set(Board(bench().base).spec.controllers) - {"gain_adaptation", "multiple_model"}
 
 
 def test_the_picture_has_a_curve_for_each_law() -> None:

@@ -34,7 +34,10 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def only_client(live: Any) -> tuple[Any, threading.Event]:
     """Return the only client, and the event of the end of its line."""
-    (room,) = live.service.hub._rooms.values()
+    hub = live.service.hub
+    while not any(room.clients for room in hub._rooms.values()):  # the connection is there before the client has joined
+        live.http.get("/health/live")
+    (room,) = hub._rooms.values()
     (client,) = room.clients
     gone, lost = threading.Event(), client.line.connection_lost
 

@@ -33,7 +33,7 @@ it("has a row for each diagnoser in the order of the server, with intervals, sha
   expect(first[1]).toBe("0.022 ± 0.003");
   expect(first[3]).toBe("12 ± 3");
   expect(first[4]).toBe("0.0 %");
-  expect(first.at(-2)).toBe("139 (1.50)");
+  expect(first.at(-2)).toBe("168 (1.45)");
 });
 
 it("gives no rank and no score to a diagnoser without probabilities", async () => {
