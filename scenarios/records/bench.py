@@ -26,7 +26,6 @@ KEPT = (
 def on_record(
     scenario: Scenario,
     record: MeasuredRecord,
-    key: str,
     noise_um: float | None = None,
     calibration: Calibration | None = None,
 ) -> Document:
@@ -36,8 +35,8 @@ def on_record(
     ----------
     scenario : Scenario
         The bench whose identifiers and diagnosers look at the record.
-    record, key
-        The record, and its key on the shelf.
+    record : MeasuredRecord
+        The record; it is on the shelf once the scenario is loaded.
     noise_um : float, optional
         The noise that filters assume, um; the noise of the calibration or of the scenario's sensor without it.
     calibration : Calibration, optional
@@ -53,14 +52,14 @@ def on_record(
     if scenario.study is not None:
         raise InputError(f"{scenario.id} is a study, which has no bench", "scenario", "choose another")
     noise = scenario.spec.context().sensor_noise_um if noise_um is None else noise_um
-    plant: Document = {"model": "record", "record": key}
+    plant: Document = {"model": "record", "record": record.key}
     device = scenario.bench.get("device", {})
     if calibration is not None:
         noise = calibration.noise_um if noise_um is None else noise_um
         plant |= {"offset_um": calibration.offset_um.value, "delay_samples": max(calibration.delay_samples.value, 0.0)}
         device = {**device, **calibrated_device(scenario, calibration)}
     return {
-        "id": f"record-{key[:12]}",
+        "id": f"record-{record.key[:12]}",
         "title": f"A record of {record.samples} samples on the bench of {scenario.id}",
         **{name: scenario.bench[name] for name in KEPT if name in scenario.bench},
         "sample_rate_khz": record.rate_khz,

@@ -80,8 +80,9 @@ def diagnose(
     calibration = calibrate(record, scenario.spec.nominal, first, end)
     if calibration.refusal:
         return RecordDiagnosis(record, calibration)
-    key = (folder or RecordFolder()).keep(record)
-    bench = Scenario.load(on_record(scenario, record, key, calibration=calibration))
+    document = on_record(scenario, record, calibration=calibration)
+    with (folder or RecordFolder()).keeping(record):
+        bench = Scenario.load(document)
     result = run(bench, taps=True)
     found = RecordDiagnosis(record, calibration, bench, result)
     for name, section in bench.spec.diagnosers.items():

@@ -6,9 +6,11 @@ import json
 import os
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -38,7 +40,10 @@ class RecordFolder:
         """Return a record; nothing when its file is absent or damaged."""
         if len(key) != 64 or set(key) - set(KEY):
             return None
-        return _loaded(self.path / f"{key}.npz", key)
+        try:
+            return _loaded(self.path / f"{key}.npz", key)
+        except (OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
+            return None
 
     def keep(self, record: MeasuredRecord) -> str:
         """Keep a record, and return its key; a record that is here already is not written again.
@@ -62,6 +67,18 @@ class RecordFolder:
             raise InputError(f"cannot write to {self.path}: {error.strerror}", FOLDER) from None
         return key
 
+    @contextmanager
+    def keeping(self, record: MeasuredRecord) -> Iterator[None]:
+        """Keep a record for good, unless the input is refused within."""
+        is_new = self.get(record.key) is None
+        key = self.keep(record)
+        try:
+            yield
+        except InputError:
+            if is_new:
+                self.remove(key)
+            raise
+
     def remove(self, key: str) -> None:
         """Remove a record."""
         (self.path / f"{key}.npz").unlink(missing_ok=True)
@@ -73,17 +90,16 @@ class RecordFolder:
 
 
 @lru_cache(maxsize=4)
-def _loaded(file: Path, key: str) -> MeasuredRecord | None:
-    try:
-        with np.load(file, allow_pickle=False) as kept:
-            about = json.loads(str(kept["about"]))
-            label = kept["label"] if "label" in kept else None
-            record = MeasuredRecord(
-                about["rate_khz"], kept["drive"], kept["displacement"], label, tuple(about["hypotheses"])
-            )
-    except (OSError, ValueError, KeyError):  # absent, or damaged
-        return None
-    return record if record.key == key else None
+def _loaded(file: Path, key: str) -> MeasuredRecord:
+    """Return the record in a file; an error is not kept, because the file may come later."""
+    with file.open("rb") as content, np.load(content, allow_pickle=False) as kept:
+        about = json.loads(str(kept["about"]))
+        label = kept["label"] if "label" in kept else None
+        columns = kept["drive"], kept["displacement"]
+    record = MeasuredRecord(about["rate_khz"], *columns, label, tuple(about["hypotheses"]))
+    if record.key != key:
+        raise ValueError(f"{file} is damaged")
+    return record
 
 
 def prepare() -> RecordFolder:

@@ -80,11 +80,12 @@ def replay(
     from scenarios.records.bench import on_record  # scipy: most commands do without it
 
     read = read_file(file, named, rate_khz, pairing)
-    key = RecordFolder().keep(read.record)
-    bench = Scenario.load(on_record(load(scenario, units), read.record, key, noise_um))
-    summary = run(with_values(bench, dict(parse_assignment(text) for text in assign or []))).summary()
+    document = on_record(load(scenario, units), read.record, noise_um)
+    with RecordFolder().keeping(read.record):
+        bench = with_values(Scenario.load(document), dict(parse_assignment(text) for text in assign or []))
+    summary = run(bench).summary()
     if as_json:
-        say_json({**summary, "record": {"key": key, "columns": read.columns, "notes": read.notes}})
+        say_json({**summary, "record": {"key": read.record.key, "columns": read.columns, "notes": read.notes}})
         return
     for part, column in read.columns.items():
         say(f"{part}: column {column}")

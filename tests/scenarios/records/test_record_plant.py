@@ -19,7 +19,8 @@ from scenarios.schema import Scenario
 
 
 def bench(record: MeasuredRecord, folder: RecordFolder, **more: Any) -> dict[str, Any]:
-    return {**on_record(get("ch5-seven-step"), record, folder.keep(record)), **more}
+    folder.keep(record)
+    return {**on_record(get("ch5-seven-step"), record), **more}
 
 
 def board(document: dict[str, Any], *, compiled: bool = True) -> Board:
@@ -121,3 +122,12 @@ def test_no_fault_reaches_a_live_record(own: MeasuredRecord, folder: RecordFolde
 def test_a_law_in_shadow_drives_nothing(own: MeasuredRecord, folder: RecordFolder) -> None:
     found = run(Scenario.load(bench(own, folder, controller={"kind": "pid"}, samples=500)), everything=True)
     assert np.array_equal(found.signal("drive.voltage"), own.drive[:500]) and found.trip is None
+
+
+@pytest.mark.parametrize("spoil", [lambda bits: b"PK" + bits[2:400], lambda bits: bits[:-9], lambda _: b"no record"])
+def test_a_damaged_file_of_the_shelf_is_no_record(spoil: Any, own: MeasuredRecord, folder: RecordFolder) -> None:
+    document = bench(own, folder)
+    (file,) = folder.path.glob("*.npz")
+    file.write_bytes(spoil(file.read_bytes()))
+    with pytest.raises(InputError, match="no record"):
+        Scenario.load(document)
