@@ -90,12 +90,13 @@ class RecordShelf(Protocol):
         """Return a record, or nothing."""
 
 
-_shelves: list[RecordShelf] = []
+_shelf: RecordShelf | None = None
 
 
-def find_on(*shelves: RecordShelf) -> None:
-    """Name the places where benches look for their records."""
-    _shelves[:] = shelves
+def find_on(shelf: RecordShelf) -> None:
+    """Name the place where benches look for their records."""
+    global _shelf
+    _shelf = shelf
 
 
 def record_of(key: str, path: str) -> MeasuredRecord:
@@ -104,9 +105,10 @@ def record_of(key: str, path: str) -> MeasuredRecord:
     Raises
     ------
     InputError
-        When no shelf has it.
+        When the shelf has none.
     """
-    for shelf in _shelves:
-        if (found := shelf.get(key)) is not None:
-            return found
-    raise InputError(f"no record {short(key)} is kept here", path, "bring it in with combbench replay or POST /records")
+    found = _shelf.get(key) if _shelf is not None else None
+    if found is None:
+        hint = "bring it in with combbench replay"
+        raise InputError(f"no record {short(key)} is kept here", path, hint)
+    return found

@@ -88,14 +88,17 @@ def prune(path: Path) -> None:
             mark.unlink(missing_ok=True)
 
 
+def user_cache() -> Path:
+    """Return the folder of this project in the user's cache."""
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return Path(home) / "combbench"
+
+
 @cache
 def folder() -> Path | None:
     """Return a folder for compiled kernels that can be written, or none."""
     given = os.environ.get("COMBBENCH_KERNEL_CACHE")
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    candidates = (
-        [Path(given)] if given else [Path(home) / "combbench", Path(tempfile.gettempdir()) / f"combbench-{os.getuid()}"]
-    )
+    candidates = [Path(given)] if given else [user_cache(), Path(tempfile.gettempdir()) / f"combbench-{os.getuid()}"]
     for candidate in candidates:
         path = candidate / "kernels"
         try:

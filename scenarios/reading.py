@@ -40,8 +40,21 @@ def read_text(path: Path, field: str) -> str:
     InputError
         When it cannot be read, or is no text.
     """
+    return decoded(read_bytes(path, field), str(path), field)
+
+
+def read_bytes(path: Path, field: str, most: int | None = None) -> bytes:
+    """Return the bytes of a file, at most so many.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, or is larger.
+    """
     try:
-        return decoded(path.read_bytes(), str(path), field)
+        if most is not None and path.stat().st_size > most:
+            raise InputError(f"{path} has more than {most} bytes", field)
+        return path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror}", field) from None
 

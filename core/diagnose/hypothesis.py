@@ -73,6 +73,11 @@ class ModelList(BlockParams):
         """How many models there are."""
         return len(self.hypotheses)
 
+    @property
+    def nominal(self) -> int | None:
+        """Which model takes nothing for changed, if one does."""
+        return next((position for position, item in enumerate(self.hypotheses) if item.is_nominal), None)
+
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         twice = [name for name, count in Counter(item.name for item in self.hypotheses).items() if count > 1]

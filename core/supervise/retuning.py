@@ -25,8 +25,8 @@ class Retuning(Supervisor):
     r"""Sets the device that a controller knows to the weighted estimate, :math:`\hat\theta=\sum_i\bar p_i\theta_i`.
 
     The weights pass a lag of a quarter of the hold time. Once a factor of the estimate has differed from the value set
-    last by more than ``least_change`` for the hold time, the estimate is set. No estimate is beyond
-    the hypotheses, so a device beyond them is not met.
+    last by more than ``least_change`` for the hold time, the estimate is set. An estimate is always within the range of
+    the hypotheses, so it falls short for a device outside this range.
     """
 
     title = "Retune the model"

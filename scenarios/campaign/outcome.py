@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import cast
 
 import numpy as np
 from pydantic import BaseModel, computed_field
@@ -14,6 +14,7 @@ from core.block import FloatArray, IntArray
 from core.board.board import Board
 from core.board.commands import Trip
 from core.compile.instructions import bits_of
+from core.diagnose.hypothesis import ModelList
 from core.errors import InputError
 from core.kernel import kernel
 from core.loop.score import Scores
@@ -132,8 +133,7 @@ def fault_of(name: str) -> str:
 
 def odds_of(board: Board, name: str, hypotheses: list[str]) -> tuple[int | None, str, list[str]]:
     """Return which hypothesis of a diagnoser is a healthy device, its probability, and the others."""
-    params: Any = board.diagnosers[name].params
-    healthy = next((position for position, item in enumerate(params.hypotheses) if item.is_nominal), None)
+    healthy = cast(ModelList, board.diagnosers[name].params).nominal
     columns = [f"{name}.probability.{hypothesis}" for hypothesis in hypotheses]
     return healthy, columns[healthy or 0], [*columns[: healthy or 0], *columns[(healthy or 0) + 1 :]]
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from itertools import pairwise
+from typing import Any, cast
 
 import numpy as np
 
+from core.block import BoolArray
+from core.board.board import Board
 from core.board.instances import scored
-from core.diagnose.hypothesis import hypotheses_of, names_of
+from core.board.rows import Rows
+from core.diagnose.hypothesis import ModelList, names_of
 from core.measured_record import MeasuredRecord
-from scenarios.measure.blocks import loaded
+from core.signals import Signal
+from scenarios.measure.blocks import loaded, stretches
 from scenarios.records.bench import on_record
 from scenarios.records.calibration import Calibration, calibrate
 from scenarios.records.shelf import RecordFolder
@@ -83,32 +89,50 @@ def diagnose(
     document = on_record(scenario, record, calibration=calibration)
     with (folder or RecordFolder()).keeping(record):
         bench = Scenario.load(document)
-    result = run(bench, taps=True)
+    banks = {name: section.params for name, section in bench.spec.diagnosers.items() if scored(section.block)}
+    gathered = _Unexplained(banks)
+    result = run(bench, trace=gathered)
     found = RecordDiagnosis(record, calibration, bench, result)
-    for name, section in bench.spec.diagnosers.items():
-        if scored(section.block):
-            words = _words(result, name, names_of(section.params))
-            found.verdicts[name] = words
-            found.healthy[name] = _healthy(section.params)
-            found.shares[name] = _shares(words, record.samples)
+    unexplained = gathered.columns()
+    for name, params in banks.items():
+        names, nominal = names_of(params), cast(ModelList, params).nominal
+        words = _words(result, name, names, unexplained[f"{name}.unexplained"])
+        found.verdicts[name] = words
+        found.healthy[name] = "" if nominal is None else names[nominal]
+        found.shares[name] = _shares(words, record.samples)
     return found
 
 
-def _healthy(params: Any) -> str:
-    """Return the name of the hypothesis without a fault; empty where a bank has none."""
-    return next((one.name for one in hypotheses_of(params) if one.is_nominal), "")
+class _Unexplained:
+    """Gathers where no hypothesis of a bank fits; all inner signals of a long record would fill a disk."""
+
+    def __init__(self, banks: Iterable[str]) -> None:
+        self._names = [f"{name}.unexplained" for name in banks]
+        self._places = np.zeros(0, np.int64)
+        self._parts: list[BoolArray] = []
+
+    def begin(self, board: Board, signals: list[Signal]) -> None:  # noqa: ARG002 (the signals that the run keeps)
+        """Find the signals among the inner signals of the board."""
+        self._places = np.array([board.signals.index(name) - board.signals.outputs for name in self._names], np.int64)
+
+    def add(self, rows: Rows) -> None:
+        """Take some rows."""
+        self._parts.append(rows.taps[:, self._places] != 0.0)
+
+    def columns(self) -> dict[str, BoolArray]:
+        """Return for each bank whether a sample is unexplained."""
+        return dict(zip(self._names, np.concatenate(self._parts).T, strict=True))
 
 
-def _words(result: RunResult, name: str, hypotheses: list[str]) -> list[RecordVerdict]:
+def _words(result: RunResult, name: str, hypotheses: list[str], unexplained: BoolArray) -> list[RecordVerdict]:
     """Return the verdicts of a bank, stretch by stretch; short ones belong to the stretch before."""
     probability = np.stack([loaded(result.signal(f"{name}.probability.{one}")) for one in hypotheses])
     winner, most = probability.argmax(axis=0), probability.max(axis=0)
     words = [*hypotheses, UNSURE, UNEXPLAINED]
     index = np.where(most >= SURE, winner, len(hypotheses))
-    index[loaded(result.signal(f"{name}.unexplained")) != 0.0] = len(hypotheses) + 1
-    edges = np.flatnonzero(np.diff(index)) + 1
+    index[unexplained] = len(hypotheses) + 1
     found: list[RecordVerdict] = []
-    for first, end in zip([0, *edges.tolist()], [*edges.tolist(), len(index)], strict=True):
+    for first, end in pairwise([*stretches(index.astype(np.float64)), len(index)]):
         word = words[index[first]]
         mean = float(most[first:end].mean())
         if found and (end - first < SHORTEST or found[-1].verdict == word):

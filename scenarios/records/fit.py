@@ -13,10 +13,11 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import expm, solve_triangular
+from scipy.linalg import solve_triangular
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
+from core.device.oscillator import held
 from scenarios.records.columns import Numbers
 
 MOST_DELAY = 8
@@ -26,7 +27,7 @@ DAMPINGS = (-1.0, 0.0, 1.0)
 DELAYS = (0.5, 2.5, 4.5, 6.5)
 """Starts of the search: logarithms of stiffness and damping over mass, over nominal, and delays in samples.
 
-No start is at a bound, because a search that begins there may stay there.
+A search that begins at a bound may stay there, so every start is off the bounds.
 """
 BEGUN = 600
 """Samples by which starts are compared."""
@@ -87,10 +88,8 @@ class Fit:
 
 def transition(stiffness: float, damping: float, dt_ms: float) -> tuple[Numbers, Numbers]:
     """Return the transition of displacement and velocity over some time, and the reach of a unit acceleration."""
-    whole = np.zeros((3, 3))
-    whole[0, 1], whole[1] = 1.0, (-stiffness, -damping, 1.0)
-    power = expm(whole * dt_ms)
-    return power[:2, :2], power[:2, 2]
+    phi11, phi12, phi21, phi22, reach, push = held(1.0, damping, stiffness, dt_ms)
+    return np.array([[phi11, phi12], [phi21, phi22]]), np.array([reach, push])
 
 
 def responses(stiffness: float, damping: float, delay: float, drive: Numbers, dt_ms: float) -> Numbers:

@@ -69,6 +69,14 @@ class Halves:
         """Standard deviation of the rounding, um: no model can do better."""
         return self.quantum / math.sqrt(12.0)
 
+    @cached_property
+    def reason(self) -> str:
+        """The effect that explains most of a residual that is no noise, in words; empty if it explains little."""
+        share, name = max((_explained(self.fitted, shape), name) for name, shape in _effects(self))
+        if share < NAMED:
+            return ""
+        return f"{name} explains {100.0 * share:.0f} % of the motion that mass, damper and spring leave unexplained"
+
 
 def clipping(halves: Halves) -> Check:
     """Look for samples that stay at an extreme value."""
@@ -133,12 +141,8 @@ def drift(halves: Halves) -> Check:
 
 
 def _because(halves: Halves, found: str) -> str:
-    """Return the likely reason for a residual that is no noise: the effect that explains most of it."""
-    shares = [(_explained(halves.fitted, shape), name) for name, shape in _effects(halves)]
-    share, name = max(shares)
-    if share >= NAMED:
-        return f"{name} explains {100.0 * share:.0f} % of the motion that mass, damper and spring leave unexplained"
-    return f"a mass, a damper and a spring do not explain the motion: {found}"
+    """Return the sentence for a residual that is no noise: its reason, or else the finding."""
+    return halves.reason or f"a mass, a damper and a spring do not explain the motion: {found}"
 
 
 def _effects(halves: Halves) -> Iterator[tuple[str, Numbers]]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.measured_record import MeasuredRecord, find_on
+from scenarios.kernel_cache import user_cache
 
 FOLDER = "COMBBENCH_RECORDS"
 """Variable of the environment that names the folder; worker processes inherit it."""
@@ -33,15 +34,14 @@ class RecordFolder:
         """The folder: the given one, the one of the environment, or one in the user's cache."""
         if self._path is not None:
             return self._path
-        home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-        return Path(os.environ.get(FOLDER) or Path(home) / "combbench" / "records")
+        return Path(os.environ.get(FOLDER) or user_cache() / "records")
 
     def get(self, key: str) -> MeasuredRecord | None:
         """Return a record; nothing when its file is absent or damaged."""
         if len(key) != 64 or set(key) - set(KEY):
             return None
         try:
-            return _loaded(self.path / f"{key}.npz", key)
+            return _loaded(self.path / f"{key}.npz")
         except (OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
             return None
 
@@ -90,14 +90,14 @@ class RecordFolder:
 
 
 @lru_cache(maxsize=4)
-def _loaded(file: Path, key: str) -> MeasuredRecord:
+def _loaded(file: Path) -> MeasuredRecord:
     """Return the record in a file; an error is not kept, because the file may come later."""
     with file.open("rb") as content, np.load(content, allow_pickle=False) as kept:
         about = json.loads(str(kept["about"]))
         label = kept["label"] if "label" in kept else None
         columns = kept["drive"], kept["displacement"]
     record = MeasuredRecord(about["rate_khz"], *columns, label, tuple(about["hypotheses"]))
-    if record.key != key:
+    if record.key != file.stem:
         raise ValueError(f"{file} is damaged")
     return record
 

@@ -9,6 +9,7 @@ import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
+from scenarios.reading import read_bytes
 from scenarios.records.reading import MOST_BYTES, ReadRecord, read_record
 from scenarios.records.shelf import RecordFolder
 from scenarios.report.text import run_text
@@ -28,12 +29,7 @@ def read_file(
     InputError
         When it cannot be read, or is no record.
     """
-    try:
-        if file.stat().st_size > MOST_BYTES:
-            raise InputError(f"{file} has more than {MOST_BYTES} bytes", "FILE")
-        content = file.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror}", "FILE") from None
+    content = read_bytes(file, "FILE", MOST_BYTES)
     return read_record(content, file.name, named=_named(named), rate_khz=rate_khz, pairing=pairing)
 
 

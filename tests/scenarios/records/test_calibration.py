@@ -48,13 +48,11 @@ def test_a_device_outside_the_model_is_refused_in_a_sentence(outside: str) -> No
 
 
 def test_a_single_tone_cannot_tell_mass_from_stiffness() -> None:
-    one = draw(4)
     t = np.arange(9000) * DT
     drive = 8 * np.sin(2 * np.pi * 2.0 * t)
-    phasor = np.sin(2 * np.pi * 2.0 * t - 1.0) + np.random.default_rng(1).normal(0, 0.02, 9000)
-    found = calibrate(MeasuredRecord(1 / DT, drive, phasor), get("first-look").spec.nominal, 0, HEALTHY)
+    measured = np.sin(2 * np.pi * 2.0 * t - 1.0) + np.random.default_rng(1).normal(0, 0.02, 9000)
+    found = calibrate(MeasuredRecord(1 / DT, drive, measured), get("first-look").spec.nominal, 0, HEALTHY)
     assert "cannot tell mass, damping and stiffness apart" in found.refusal and "two tones" in found.refusal
-    assert one.drawn["m"] > 0
 
 
 def test_a_healthy_record_of_the_bench_itself_has_no_fault(own: MeasuredRecord, folder: RecordFolder) -> None:

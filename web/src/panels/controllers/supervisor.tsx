@@ -4,7 +4,7 @@ import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { formatCount, formatMoment, formatShort } from "../../ui/format";
 
-/** The supervisor now: what it has concluded, what it waits for, its last act and the reason. */
+/** The verdict of the supervisor, the time it waits, its last act and the reason. */
 export function Supervisor() {
   const now = useBench((s) => s.bench?.supervisor);
   const dt = useBench((s) => s.bench?.dt_ms) ?? 0;
