@@ -68,6 +68,7 @@ def sweep(
     ----------
     campaign : str, Path or dict
         A campaign file, or its document: ``{"scenario": "ch5-seven-step", "seeds": {"count": 8}, "grid": {...}}``.
+        Points of a design are ``{"points": {"paths": [...], "rows": [...]}}``, or ``{"points": {"table": FILE}}``.
     folder : str or Path, optional
         Where the results are kept; a temporary folder unless given.
     resume : bool
@@ -82,9 +83,9 @@ def sweep(
     """
     from scenarios.campaign.parquet import ParquetParts
     from scenarios.campaign.survey import Survey
-    from server.cli.sweep import PARTS, carry_out, checked, read_sweep
+    from server.cli.sweep import PARTS, carry_out, checked, read_sweep, with_table
 
-    chosen = checked(campaign) if isinstance(campaign, dict) else read_sweep(Path(campaign))
+    chosen = checked(with_table(campaign, Path())) if isinstance(campaign, dict) else read_sweep(Path(campaign))
     place = Path(folder) if folder is not None else Path(tempfile.mkdtemp(prefix="combbench-"))
     carry_out(chosen, place, "", resume, workers or os.cpu_count() or 1, "", lambda _done, _all: None)
     return CampaignResult(place, Survey(chosen, ParquetParts(chosen, place / PARTS)))

@@ -1,8 +1,8 @@
 """Checks of a campaign before it begins: its whole document, but not every point.
 
-Each value of a variant or a grid, and both ends of each range, are tried with the first values of all else. The points
-themselves are read when their runs are made; a point that gives no valid scenario gives runs with an error. Of random
-draws, such as devices, one possible draw is enough.
+Each value of a variant or a grid, and the rows with the least and the greatest number of each column, are tried with
+the first values of all else. The points themselves are read when their runs are made; a point that gives no valid
+scenario gives runs with an error. Of random draws, such as devices, one possible draw is enough.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def check(sweep: Sweep) -> Scenario:
     number, scenario = _first(points)
     first = [_step(axis, number) for axis in points.varied]
     for position, axis in enumerate(points.varied):
-        for step in axis.ends(number) if isinstance(axis, RowsAxis) else _telling(axis):
+        for step in axis.ends(MOST) if isinstance(axis, RowsAxis) else _telling(axis):
             steps = [*first[:position], step, *first[position + 1 :]]
             scenario = Scenario.load(points.of(steps).document, like=scenario)
     return Scenario.load(_longest(sweep, first).document, like=scenario)

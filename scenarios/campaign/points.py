@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Protocol, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray
 from core.errors import InputError
@@ -33,41 +34,58 @@ class SweepAxis(Protocol):
 
 
 class RowsAxis:
-    """An axis whose steps are rows of an array: a step as a dictionary takes hundreds of bytes.
+    """An axis whose steps are rows of a table, kept as columns: a step as a dictionary takes hundreds of bytes.
 
     Parameters
     ----------
-    paths : sequence of str
-        The fields of the scenario that the columns set.
-    rows : ndarray
-        The values, a row for each step.
+    columns : dict of ndarray
+        By the field of the scenario that a column sets, a value for each step: numbers, or texts as objects.
     number : str
         Name under which tables show the number of a row, for those drawn by chance; empty: they show its values.
     """
 
-    def __init__(self, paths: Sequence[str], rows: FloatArray, number: str = "") -> None:
-        self.paths, self._rows, self._number = tuple(paths), rows, number
+    def __init__(self, columns: Mapping[str, NDArray[Any]], number: str = "") -> None:
+        self.paths, self._columns, self._number = tuple(columns), columns, number
 
     def __len__(self) -> int:
         """Return the number of steps."""
-        return len(self._rows)
+        return len(self._columns[self.paths[0]])
 
     def __getitem__(self, at: int) -> Step:
         """Return a step."""
-        values = dict(zip(self.paths, self._rows[at].tolist(), strict=True))
-        return ({self._number: float(at + 1)} if self._number else {**values}), values
+        values = {path: column.item(at) for path, column in self._columns.items()}
+        return ({self._number: float(at + 1)} if self._number else _labels(values)), values
+
+    @property
+    def numbers(self) -> list[str]:
+        """The fields that are set to numbers."""
+        return [path for path, column in self._columns.items() if column.dtype.kind in "if"]
 
     def column(self, path: str) -> FloatArray:
-        """Return the values that the steps write to a field."""
-        column: FloatArray = self._rows[:, self.paths.index(path)]
-        return column
+        """Return the numbers that the steps write to a field; nan in place of texts."""
+        column = self._columns[path]
+        return column.astype(float) if path in self.numbers else np.full(len(self), math.nan)
 
-    def ends(self, at: int) -> list[Step]:
-        """Return a step with each value as small, then as large as it becomes; none where chance draws them."""
-        _, values = self[at]
-        ends = np.array([self._rows.min(axis=0), self._rows.max(axis=0)]).T.tolist()
-        changed = [{**values, path: end} for path, pair in zip(self.paths, ends, strict=True) for end in pair]
-        return [] if self._number else [({**one}, one) for one in changed]
+    def ends(self, most: int) -> list[Step]:
+        """Return the steps with the least and the greatest number of each field, and those with its first texts.
+
+        There are none where chance draws them.
+        """
+        if self._number:
+            return []
+        found: set[int] = set()
+        for path, column in self._columns.items():
+            if path in self.numbers:
+                found |= {int(column.argmin()), int(column.argmax())}
+            else:
+                first = {text: at for at, text in reversed([*enumerate(column.tolist())])}
+                found |= {*sorted(first.values())[:most]}
+        return [self[at] for at in sorted(found)]
+
+
+def _labels(values: Values) -> Labels:
+    """Write values for a table."""
+    return {path: str(value) if isinstance(value, bool) else value for path, value in values.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +193,7 @@ class Points(Sequence[Point]):
         """Return the names of labels, in their order, and whether one of the values is a text."""
         found: dict[str, bool] = {}
         for axis in self.varied:
-            for number in range(1 if isinstance(axis, RowsAxis) else len(axis)):  # the rows of an array are numbers
+            for number in range(1 if isinstance(axis, RowsAxis) else len(axis)):  # columns have values of one kind
                 for name, value in axis[number][0].items():
                     found[name] = found.get(name, False) or isinstance(value, str)
         return found

@@ -13,6 +13,7 @@ from core.block import FloatArray
 from core.device.spread import Tolerances, draw
 from core.errors import InputError, from_validation, short
 from core.table import Table, Words
+from scenarios.campaign.point_table import MOST_PATHS, MOST_POINTS, PointTable
 from scenarios.campaign.points import Contents, Point, Points, RowsAxis, Step, SweepAxis, Values
 from scenarios.edit import with_values
 from scenarios.key import run_key
@@ -20,10 +21,6 @@ from scenarios.library import get
 from scenarios.reading import without_address
 from scenarios.schema import Scenario
 from scenarios.seeds import MAX_RUNS, Seeds
-
-MAX_POINTS = 100_000
-MAX_RANGES = 50
-"""Values that vary at once."""
 
 
 class Range(Table):
@@ -51,26 +48,25 @@ class Range(Table):
 class LatinHypercube(Table):
     """Points spread evenly in every value at once (McKay, Beckman, Conover 1979)."""
 
-    points: int = Field(ge=1, le=MAX_POINTS, description="number of points")
+    points: int = Field(ge=1, le=MOST_POINTS, description="number of points")
     seed: int = Field(1, ge=0, description="seed of the points")
     ranges: dict[str, Range] = Field(
-        min_length=1, max_length=MAX_RANGES, description="ranges of values, by dotted paths of the scenario"
+        min_length=1, max_length=MOST_PATHS, description="ranges of values, by dotted paths of the scenario"
     )
 
-    def values(self) -> FloatArray:
-        """Return a row for each point: each value has one point in every stratum, in an order of its own."""
+    def values(self) -> dict[str, FloatArray]:
+        """Return a column for each path: each value has one point in every stratum, in an order of its own."""
         generator = np.random.default_rng(self.seed)
-        columns = [
-            entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
-            for entry in self.ranges.values()
-        ]
-        return np.array(columns).T
+        return {
+            path: entry.at((generator.permutation(self.points) + generator.random(self.points)) / self.points)
+            for path, entry in self.ranges.items()
+        }
 
 
 class ProcessDeviations(Table):
     """Standard deviations of a process that makes devices of the scenario's drawing."""
 
-    devices: int = Field(ge=1, le=MAX_POINTS, description="number of devices")
+    devices: int = Field(ge=1, le=MOST_POINTS, description="number of devices")
     seed: int = Field(1, ge=0, description="seed of the devices")
     beam_bias_um: float = Field(Tolerances.beam_bias_um, ge=0, description="of the etch bias of beams, µm")
     comb_bias_um: float = Field(Tolerances.comb_bias_um, ge=0, description="of the etch bias of fingers, µm")
@@ -85,8 +81,7 @@ class ProcessDeviations(Table):
             raise InputError("has no drawing to vary; choose lcr-350", "device.id")
         tolerances = Tolerances(**self.model_dump(exclude={"devices", "seed"}))
         drawn = draw(geometry, tolerances, self.devices, self.seed).drawn
-        paths = [f"device.geometry.{name}" for name in drawn]
-        return RowsAxis(paths, np.array(list(drawn.values())).T, "device")
+        return RowsAxis({f"device.geometry.{name}": column for name, column in drawn.items()}, "device")
 
 
 class SweepVariant(Table):
@@ -107,6 +102,7 @@ class CampaignHead(Table):
     seeds: Seeds = Field(Seeds(), description='noise seeds of each point, "A:B" with both ends')
     variants: list[SweepVariant] = Field([], max_length=1000, description="alternatives, such as controllers")
     grid: dict[str, list[Any]] = Field({}, description="lists of values, by dotted paths of the scenario")
+    points: PointTable | None = Field(None, description="points from outside, a row for each")
     latin_hypercube: LatinHypercube | None = Field(None, description="points spread evenly over ranges of values")
     process_spread: ProcessDeviations | None = Field(None, description="devices that a process draws")
 
@@ -121,7 +117,7 @@ class Sweep:
     head : Head
         Its tables.
     points : sequence of Point
-        Every combination of variant, grid, hypercube and device.
+        Every combination of variant, grid, point of a table, hypercube and device.
     contents : sequence of str
         The hash of every point.
     """
@@ -138,8 +134,8 @@ class Sweep:
         axes = self._axes()
         self._check_paths(axes)
         count = math.prod(len(axis) for axis in axes)
-        if count > MAX_POINTS or count * self.head.seeds.count > MAX_RUNS:
-            text = f"{count} points with {self.head.seeds.count} seeds each; at most {MAX_POINTS} points"
+        if count > MOST_POINTS or count * self.head.seeds.count > MAX_RUNS:
+            text = f"{count} points with {self.head.seeds.count} seeds each; at most {MOST_POINTS} points"
             raise InputError(f"{text} and {MAX_RUNS} runs", "grid", code="too_long")
         self.points = Points(axes, self.base.document)
         self.contents: Sequence[str] = Contents(self.points)
@@ -179,7 +175,9 @@ class Sweep:
             _distinct(labels, f"grid.{path}", "points of one value")
             axes.append([({path: label}, {path: value}) for label, value in zip(labels, choices, strict=True)])
         if head.latin_hypercube is not None:
-            axes.append(RowsAxis([*head.latin_hypercube.ranges], head.latin_hypercube.values()))
+            axes.append(RowsAxis(head.latin_hypercube.values()))
+        if head.points is not None:
+            axes.append(head.points.steps())
         if head.process_spread is not None:
             axes.append(head.process_spread.steps(self.base))
         return axes
@@ -188,7 +186,8 @@ class Sweep:
         """Refuse settings that make the labels of points wrong: seeds that are not used, values written over."""
         head = self.head
         ranges = head.latin_hypercube.ranges if head.latin_hypercube is not None else {}
-        tables = {"set": head.set, "grid": head.grid, "latin_hypercube.ranges": ranges}
+        listed = dict.fromkeys(head.points.paths) if head.points is not None else {}
+        tables = {"set": head.set, "grid": head.grid, "latin_hypercube.ranges": ranges, "points.paths": listed}
         tables |= {f"variants.{position}.set": variant.set for position, variant in enumerate(head.variants)}
         for where, table in tables.items():
             if "seed" in table:
@@ -198,7 +197,7 @@ class Sweep:
             some = 1 if isinstance(axis, RowsAxis) else len(axis)  # all rows set the same
             paths = {path for number in range(some) for path in axis[number][1]}
             for path in sorted(paths & taken):
-                text = "has values in two of variants, grid, latin_hypercube and process_spread"
+                text = "has values in two of variants, grid, points, latin_hypercube and process_spread"
                 raise InputError(text, path, "give them in one")
             taken |= paths
 

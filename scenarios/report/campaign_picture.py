@@ -99,7 +99,7 @@ def campaign_picture(
         raise unknown("figure", figure, figures, "figure")
     figure = figure or next(iter(figures), "")
     grid = [path for path, choices in sweep.head.grid.items() if _is_varied(choices)]
-    drawn = [path for axis in sweep.points.varied if isinstance(axis, RowsAxis) for path in axis.paths]
+    drawn = [path for axis in sweep.points.varied if isinstance(axis, RowsAxis) for path in axis.numbers]
     kind = "ranking" if drawn or len(grid) > 2 else BY_NUMBERS[len(grid)]
     numbers = [*drawn, *grid]
     there = {number: point for number, point in points.items() if figure in point.metrics}

@@ -18,6 +18,7 @@ from scenarios.campaign.campaign import Campaign, Stopped
 from scenarios.campaign.check import check
 from scenarios.campaign.executor import LOST, Processes
 from scenarios.campaign.parquet import ParquetParts, write_runs
+from scenarios.campaign.point_table import read_point_table
 from scenarios.campaign.survey import Survey, listed
 from scenarios.campaign.sweep import Sweep
 from scenarios.library import get
@@ -65,7 +66,7 @@ def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
     InputError
         When a file cannot be read or its content is wrong.
     """
-    document = _toml(path, "sweep")
+    document = with_table(_toml(path, "sweep"), path.parent)
     source = document.get("scenario")
     if isinstance(source, str) and source.endswith(".toml"):
         document["scenario"] = _toml(path.parent / source, "scenario")
@@ -73,6 +74,22 @@ def read_sweep(path: Path, units: Iterable[Path] = ()) -> Sweep:
         base = document.get("scenario")
         document["scenario"] = with_units(get(base).document if isinstance(base, str) else base or {}, units)
     return checked(document)
+
+
+def with_table(document: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the document of a campaign with the rows of the file that its points name, relative to a folder.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or the document has other rows too.
+    """
+    points = document.get("points")
+    if not isinstance(points, dict) or not isinstance(table := points.get("table"), str):
+        return document
+    if len(points) > 1:
+        raise InputError("give a table, or paths and rows, not both", "points")
+    return {**document, "points": read_point_table(folder / table)}
 
 
 def checked(document: dict[str, Any]) -> Sweep:

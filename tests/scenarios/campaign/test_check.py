@@ -54,7 +54,7 @@ def test_of_what_chance_draws_one_that_is_possible_is_enough() -> None:
     """A first device that is impossible is passed over; where all are, the campaign is refused."""
     sweep = Sweep(SEVEN)
     for noises, is_possible in (([-1.0, 0.1, -2.0], True), ([-1.0, -2.0], False)):
-        sweep.points = Points([RowsAxis([NOISE], np.array([noises]).T, "device")], sweep.base.document)
+        sweep.points = Points([RowsAxis({NOISE: np.array(noises)}, "device")], sweep.base.document)
         with nullcontext() if is_possible else pytest.raises(InputError, match=NOISE):
             check(sweep)
 

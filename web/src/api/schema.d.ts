@@ -10478,6 +10478,8 @@ export interface components {
             grid?: {
                 [key: string]: unknown[];
             };
+            /** @description points from outside, a row for each */
+            points?: components["schemas"]["PointTable"] | null;
             /** @description points spread evenly over ranges of values */
             latin_hypercube?: components["schemas"]["LatinHypercube"] | null;
             /** @description devices that a process draws */
@@ -13668,6 +13670,32 @@ export interface components {
         /** Plant */
         Plant: components["schemas"]["GyroscopePlant"] | components["schemas"]["GyroscopePairPlant"] | components["schemas"]["LinearPlant"] | components["schemas"]["NonlinearPlant"] | components["schemas"]["PlanarPlant"] | components["schemas"]["SlavedLateralPlant"] | components["schemas"]["TransferFunctionPlant"];
         /**
+         * PointTable
+         * @description Points from outside: a row for each, with values for some paths of the scenario.
+         */
+        PointTable: {
+            /**
+             * @description CSV or Parquet file, whose columns are the paths; relative to the campaign
+             * @default
+             */
+            table?: string;
+            /**
+             * @description the rows as CSV text, whose header has the paths
+             * @default
+             */
+            csv?: string;
+            /**
+             * @description dotted paths of the scenario, a column for each
+             * @default []
+             */
+            paths?: string[];
+            /**
+             * @description values, a row for each point
+             * @default []
+             */
+            rows?: unknown[][];
+        };
+        /**
          * PositiveRealCase
          * @description A transfer function, highest power first.
          */
@@ -16340,6 +16368,7 @@ export type PickOffSensor = components['schemas']['PickOffSensor'];
 export type PidController = components['schemas']['PidController'];
 export type PlanarPlant = components['schemas']['PlanarPlant'];
 export type Plant = components['schemas']['Plant'];
+export type PointTable = components['schemas']['PointTable'];
 export type PositiveRealCase = components['schemas']['PositiveRealCase'];
 export type PositiveRealStudy = components['schemas']['PositiveRealStudy'];
 export type PrbsReference = components['schemas']['PrbsReference'];

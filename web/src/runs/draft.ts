@@ -28,12 +28,14 @@ export interface Draft {
   firstSeed: number;
   /** 0 while the field is empty: one. */
   seeds: number;
-  vary: "nothing" | "grid" | "hypercube";
+  vary: "nothing" | "grid" | "hypercube" | "table";
   grid: Row[];
   ranges: RangeRow[];
   /** 0 while the field is empty: one. */
   points: number;
   hypercubeSeed: number;
+  /** Rows of a design from outside: CSV text whose header has the paths. */
+  table: string;
   /** Devices drawn from the process spread; 0: the scenario's own. */
   devices: number;
 }
@@ -55,6 +57,7 @@ export function newDraft(scenario: string): Draft {
     ranges: [EMPTY_RANGE],
     points: 20,
     hypercubeSeed: 1,
+    table: "",
     devices: 0,
   };
 }
@@ -87,6 +90,9 @@ export function parseValues(text: string): unknown[] {
 
 const filled = <T extends { path: string }>(rows: readonly T[]) => rows.filter((row) => row.path.trim() !== "");
 
+/** How many rows CSV text has below its header. */
+export const rowCount = (text: string) => Math.max(0, text.split("\n").filter((line) => line.trim() !== "").length - 1);
+
 /** How many points a campaign has. */
 export function pointCount(draft: Draft): number {
   const varied =
@@ -94,7 +100,9 @@ export function pointCount(draft: Draft): number {
       ? filled(draft.grid).reduce((product, row) => product * Math.max(1, parseValues(row.text).length), 1)
       : draft.vary === "hypercube" && filled(draft.ranges).length > 0
         ? Math.max(1, draft.points)
-        : 1;
+        : draft.vary === "table"
+          ? Math.max(1, rowCount(draft.table))
+          : 1;
   return varied * Math.max(1, draft.devices);
 }
 
@@ -112,7 +120,7 @@ export function runOf(draft: Draft) {
 
 /** The campaign's document, as a file would have it. */
 export function campaignOf(draft: Draft): Campaign {
-  const { scenario, firstSeed, seeds, vary, points, hypercubeSeed, devices } = draft;
+  const { scenario, firstSeed, seeds, vary, points, hypercubeSeed, table, devices } = draft;
   const ranges = filled(draft.ranges);
   return {
     schema: 1,
@@ -136,6 +144,7 @@ export function campaignOf(draft: Draft): Campaign {
           ),
         },
       }),
+    ...(vary === "table" && { points: { csv: table } }),
     ...(devices > 0 && { process_spread: { devices } }),
   };
 }

@@ -104,7 +104,7 @@ it("starts a campaign over a grid, and counts its runs", async () => {
 it("starts a campaign over a hypercube, its last range included, with devices of the process", async () => {
   const { user, form, campaign, type } = mountForm();
   await campaign();
-  await user.click(form.getByRole("radio", { name: "Latin hypercube" }));
+  await user.click(form.getByRole("radio", { name: "Hypercube" }));
   await user.click(form.getByRole("button", { name: "Another range" }));
   await user.type(form.getByRole("combobox", { name: "Spread evenly over 1: path" }), "a.b");
   await user.type(form.getByRole("combobox", { name: "Spread evenly over 2: path" }), "c.d");
@@ -127,6 +127,21 @@ it("starts a campaign over a hypercube, its last range included, with devices of
       process_spread: { devices: 2 },
     },
   });
+});
+
+it("starts a campaign over the rows of a CSV file, and counts them", async () => {
+  const { user, form, campaign } = mountForm();
+  await campaign();
+  await user.click(form.getByRole("radio", { name: "Table" }));
+  const text = "sensor.noise_um,controller.kind\n0.05,mrac\n0.2,pid\n";
+  const chooser = document.querySelector<HTMLInputElement>("input[type=file]");
+  if (!chooser) throw new Error("there is no chooser of files");
+  await user.upload(chooser, new File([text], "design.csv", { type: "text/csv" }));
+  await vi.waitFor(() => expect(form.getByRole("textbox", { name: "Rows" })).toHaveValue(text));
+  await user.click(form.getByRole("button", { name: /^Start 2\sruns$/ }));
+  const { sweep } = server.asked("POST", "/sweeps")[0].body as { sweep: object };
+  expect(sweep).toMatchObject({ points: { csv: text }, seeds: "1:1" });
+  expect(sweep).not.toHaveProperty("grid");
 });
 
 it("removes a row that is not wanted", async () => {

@@ -1,12 +1,14 @@
 import {
   Button,
   Checkbox,
+  FileInput,
   Group,
   NumberInput,
   type NumberInputProps,
   SegmentedControl,
   Select,
   Stack,
+  Textarea,
   TextInput,
 } from "@mantine/core";
 import { IconPlayerTrackNext } from "@tabler/icons-react";
@@ -23,7 +25,7 @@ import { PathRows, ValueRows } from "./value-rows";
 
 const FIRST = "ch5-seven-step";
 
-/** What to run: a scenario with other values, over seeds, a grid, a hypercube, or devices of the process. */
+/** What to run: a scenario with other values, over seeds, a grid, a hypercube, a table, or devices of the process. */
 export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
   const [draft, setDraft] = useState<Draft>(() => newDraft(FIRST));
   const [library, setLibrary] = useState<ScenarioSummary[]>([]);
@@ -110,7 +112,8 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
             value={draft.vary}
             data={[
               { value: "grid", label: "Grid" },
-              { value: "hypercube", label: "Latin hypercube" },
+              { value: "hypercube", label: "Hypercube" },
+              { value: "table", label: "Table" },
               { value: "nothing", label: "Seeds alone" },
             ]}
             onChange={(vary) => set({ vary: vary as Draft["vary"] })}
@@ -125,6 +128,7 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
               onChange={(grid) => set({ grid })}
             />
           )}
+          {draft.vary === "table" && <PointTable table={draft.table} set={set} />}
           {draft.vary === "hypercube" && <Hypercube draft={draft} paths={paths} set={set} />}
           <WholeNumber
             label="Random devices"
@@ -170,6 +174,32 @@ export function StartForm({ onStarted }: { onStarted(chosen: Chosen): void }) {
         Runs work in the background, after the live benches. Runs whose results are stored are not repeated.
       </p>
     </Stack>
+  );
+}
+
+/** Points that another program has chosen: a CSV file, or rows pasted as text. */
+function PointTable({ table, set }: { table: string; set(part: Partial<Draft>): void }) {
+  const read = async (file: File | null) => file && set({ table: await file.text() });
+  return (
+    <>
+      <FileInput
+        label="CSV file"
+        placeholder="Choose a file"
+        accept=".csv,text/csv"
+        onChange={(file) => void read(file)}
+      />
+      <Textarea
+        label="Rows"
+        description="The header has dotted paths of the scenario; each row below is a point."
+        placeholder={"sensor.noise_um,controller.kind\n0.05,mrac\n0.2,pid"}
+        autosize
+        minRows={3}
+        maxRows={8}
+        spellCheck={false}
+        value={table}
+        onChange={(e) => set({ table: e.currentTarget.value })}
+      />
+    </>
   );
 }
 
