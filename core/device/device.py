@@ -11,6 +11,7 @@ from core.block import BlockParams, Oscillator, parameter
 from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
+from core.device.fringing import Fringing, fringing_factor
 from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
 from core.device.ranges import BiasV, DampingNsM, Fingers, ForceNPerV, LengthUm, MassKg, Resonator, StiffnessNM
@@ -44,6 +45,7 @@ OF_RESONATOR = (
     "fingers",
     "thickness_um",
     "finger_gap_um",
+    "fringing",
     "transfer_function",
     "printed",
 )
@@ -63,7 +65,7 @@ class Device(BlockParams):
         =-4n\varepsilon_0\frac{t}{g}V_b\,v ,
 
     so a positive voltage pulls towards -x. Equation 5.2.1 puts *identical* voltages on both stators, which
-    gives no force at all.
+    gives no force at all. The force is that of plates, unless ``fringing`` adds the field beyond them (1.5).
 
     Either mass, damping and stiffness are given, or ``geometry``; a value given in addition to a geometry wins. A
     ``transfer_function`` describes a plant that is no resonator, and has none of these. A gyroscope moves along two
@@ -90,6 +92,9 @@ class Device(BlockParams):
     fingers: Fingers | None = parameter(None, "rotor fingers per side", live=False)
     thickness_um: LengthUm | None = parameter(None, "structural thickness", "um", live=False)
     finger_gap_um: LengthUm | None = parameter(None, "gap between fingers as etched", "um", live=False)
+    fringing: Fringing | None = parameter(
+        None, "field beyond the facing sides of fingers: over a grounded plane, or free of one", live=False
+    )
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
     drawn_gyroscope: DrawnGyroscope | None = parameter(
@@ -122,10 +127,16 @@ class Device(BlockParams):
             raise ValueError("needs force_n_per_v, or fingers with thickness_um and finger_gap_um, or a geometry")
         if self.force_n_per_v is not None and self.bias_v == 0.0:
             raise ValueError("force_n_per_v is the force at the bias, so bias_v must not be 0")
+        if self.force_n_per_v is not None and self.fringing is not None:
+            raise ValueError("force_n_per_v holds the fringing already; leave out fringing or force_n_per_v")
         try:
             Resonator.model_validate(self.resolved)
         except ValidationError as error:
             raise ValueError(f"the drawing gives {from_validation(error)}") from None
+        try:
+            self.fringing_factor  # noqa: B018  (refuses a comb that it does not know)
+        except InputError as error:
+            raise ValueError(f"fringing {error.message}; {error.hint}") from None
         return self
 
     @property
@@ -194,6 +205,20 @@ class Device(BlockParams):
         return self.bias_v, opposite
 
     @property
+    def fringing_factor(self) -> float:
+        """dC/dx over dC/dx of plates.
+
+        Raises
+        ------
+        InputError
+            For a comb outside the checked proportions.
+        """
+        if self.fringing is None:
+            return 1.0
+        drawn = self.drawing
+        return fringing_factor(self.fringing, drawn.finger_um, drawn.gap_um, drawn.thickness_um, drawn.film_gap_um)
+
+    @property
     def capacitance_gradient(self) -> float:
         """dC/dx of one comb, F/m; a transfer function has no comb, and a gyroscope is driven by forces."""
         if self.usual_plant != "linear":
@@ -201,7 +226,8 @@ class Device(BlockParams):
         if self.force_n_per_v is not None:
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
         drawn = self.drawing
-        return 2.0 * (self.fingers or drawn.fingers) * EPSILON_0 * drawn.thickness_um / drawn.gap_um
+        plates = 2.0 * (self.fingers or drawn.fingers) * EPSILON_0 * drawn.thickness_um / drawn.gap_um
+        return plates * self.fringing_factor if self.fringing is not None else plates
 
     @property
     def signed_force_n_per_v(self) -> float:
@@ -254,6 +280,8 @@ class Device(BlockParams):
                 quoted |= self.drawn_gyroscope.metrics(self.geometry, stiffness_scale, scale)
             return quoted
         quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
+        if self.fringing is not None:
+            quoted["fringing_factor"] = self.fringing_factor
         if self.printed is not None:
             quoted |= self.printed.metrics()
         return quoted

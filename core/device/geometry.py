@@ -50,8 +50,7 @@ class Geometry(BlockParams):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        finger = self.finger_width_um - 2.0 * self.comb_bias_um
-        for what, left in (("beams", self.beam_um), ("trusses", self.truss_um), ("fingers", finger)):
+        for what, left in (("beams", self.beam_um), ("trusses", self.truss_um), ("fingers", self.finger_um)):
             if left <= 0.0:
                 raise ValueError(f"nothing is left of the {what}: the etch bias per edge takes their whole width")
         if self.gap_um <= 0.0:
@@ -73,6 +72,11 @@ class Geometry(BlockParams):
         return self.truss_width_um - 2.0 * self.beam_bias_um
 
     @property
+    def finger_um(self) -> float:
+        """Width of a finger as etched."""
+        return self.finger_width_um - 2.0 * self.comb_bias_um
+
+    @property
     def gap_um(self) -> float:
         """Gap between fingers as etched."""
         return self.finger_gap_um + 2.0 * self.comb_bias_um
@@ -90,10 +94,9 @@ class Geometry(BlockParams):
     @property
     def areas_um2(self) -> tuple[float, float, float, float]:
         """Plan areas of shuttle, beams and trusses, and facing area of the combs."""
-        finger = self.finger_width_um - 2.0 * self.comb_bias_um
         plate = self.plate_length_um * self.plate_width_um - self.openings_um2
         arms = 2.0 * self.arm_width_um * self.arm_length_um
-        shuttle = plate + arms + 2.0 * self.fingers * self.finger_length_um * finger
+        shuttle = plate + arms + 2.0 * self.fingers * self.finger_length_um * self.finger_um
         beams = 8.0 * self.beam_length_um * self.beam_um
         trusses = 2.0 * 3.0 * self.truss_segment_um * self.truss_um
         combs = 4.0 * self.fingers * self.overlap_um * self.thickness_um

@@ -38,8 +38,8 @@ def test_a_grid_is_every_combination_and_every_point_has_every_seed() -> None:
 def test_a_latin_hypercube_has_one_point_in_every_stratum_of_every_value() -> None:
     ranges = {"a": {"min": 2.0, "max": 4.0}, "b": {"min": 0.01, "max": 100.0, "scale": "log"}}
     values = LatinHypercube.model_validate({"points": 40, "seed": 3, "ranges": ranges}).values()
-    linear = (values[:, 0] - 2.0) / 2.0
-    decades = (np.log10(values[:, 1]) + 2.0) / 4.0
+    linear = (values["a"] - 2.0) / 2.0
+    decades = (np.log10(values["b"]) + 2.0) / 4.0
     for share in (linear, decades):
         assert sorted(np.floor(share * 40).astype(int)) == list(range(40))
     assert abs(np.corrcoef(linear, decades)[0, 1]) < 0.5  # the orders are drawn apart
