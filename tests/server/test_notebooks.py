@@ -88,7 +88,7 @@ def test_a_design_with_python_control(tmp_path: Path) -> None:
 @pytest.mark.long
 @pytest.mark.timeout(240)
 def test_designs_of_other_programs(tmp_path: Path) -> None:
-    """Sobol indices of a table of 2048 points are the exact ones within 0.02; the optimiser finds a gain that tracks."""
+    """Sobol indices of a table of 2048 points are exact within 0.02, and the optimiser finds a gain that tracks."""
     said = printed("design", tmp_path)
     indices = re.findall(r"^(S1|ST) device\.\w+ +(0\.\d+), exactly (0\.\d+)$", said, re.M)
     assert "2048 points" in said and len(indices) == 4
