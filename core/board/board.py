@@ -15,7 +15,7 @@ from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import SUPERVISOR, Document
 from core.board.fold import Words
-from core.board.history import History
+from core.board.history import WIDEST, History
 from core.board.kept import KeptTicks
 from core.board.log import Log, LogEntry
 from core.board.lost import EVERY, Lost, lost, next_look
@@ -147,7 +147,7 @@ class Board:
         Pending commands take effect at the edges of the ticks they wait for, whatever the chunks. A block that has lost
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
-        first, idle = self.tick, self._advance(n, None)
+        first, idle = self.tick, self._advance(min(n, CHUNK), None)
         return Rows(first, done := self.tick - first, self._outputs[:done], self._taps[:done], idle)
 
     @property
@@ -156,14 +156,14 @@ class Board:
         return self.compiled
 
     def advance_into(self, history: History, n: int) -> KeptTicks:
-        """Advance a board that ``keeps`` in the same way, with the ticks in a history instead of rows."""
+        """Advance a board that ``keeps`` into a history instead of rows, by at most ``WIDEST``: each history has them."""
         first = self.tick
-        self._advance(n, history)
+        self._advance(min(n, WIDEST), history)
         return KeptTicks(first, self.tick - first, history)
 
     def _advance(self, n: int, history: History | None) -> BoolArray:
         """Run ticks, and return the taps that stayed 0 throughout."""
-        first, end = self.tick, self.tick + min(n, CHUNK, self._left())
+        first, end = self.tick, self.tick + self._playable(n)
         self.walk.join()
         idle = self.walk.idle
         while self.tick < end:
@@ -189,12 +189,12 @@ class Board:
                 self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
         return idle
 
-    def _left(self) -> int:
-        """Return the ticks that the plant can still play; at the end of a record the board trips."""
-        left = CHUNK if self.spec.record is None else self.spec.record.samples - self.tick
-        if left <= 0 and self.trip is None:
+    def _playable(self, n: int) -> int:
+        """Return how many of some ticks the plant can still play; at the end of a record the board trips."""
+        left = n if self.spec.record is None else self.spec.record.samples - self.tick
+        if left <= 0 < n and self.trip is None:
             self._trip("the record has ended")
-        return left
+        return min(n, left)
 
     def _supply(self, n: int) -> None:
         """Give the plant the samples of the next ticks, where it is a record."""
