@@ -15,13 +15,14 @@ from core.board.commands import Command, Trip
 from core.board.condition import Condition, parse_condition
 from core.board.document import SUPERVISOR, Document
 from core.board.fold import Words
-from core.board.history import WIDEST, History
+from core.board.history import History
 from core.board.kept import KeptTicks
 from core.board.log import Log, LogEntry
 from core.board.lost import EVERY, Lost, lost, next_look
 from core.board.observer import Finding, Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
+from core.board.pyramid import WIDEST
 from core.board.rows import Rows
 from core.board.scoring import scores
 from core.board.segments import SharedSegment
@@ -156,9 +157,8 @@ class Board:
         return self.compiled
 
     def advance_into(self, history: History, n: int) -> KeptTicks:
-        """Advance a board that ``keeps`` into a history instead of rows, by at most ``WIDEST``: each history has them."""
-        first = self.tick
-        self._advance(min(n, WIDEST), history)
+        """Advance a board that ``keeps``, into a history instead of rows; at most ``WIDEST`` ticks, which each has."""
+        first, _ = self.tick, self._advance(min(n, WIDEST), history)
         return KeptTicks(first, self.tick - first, history)
 
     def _advance(self, n: int, history: History | None) -> BoolArray:

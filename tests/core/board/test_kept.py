@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from core.board import kept, program
 from core.board.board import CHUNK, Board
-from core.board.history import WIDEST, History
+from core.board.history import History
 from core.board.kept import KeptTicks
+from core.board.pyramid import WIDEST
 from core.board.rows import Rows
 from core.board.stored import revived, stored
 from core.errors import InputError
