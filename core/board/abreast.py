@@ -177,7 +177,8 @@ class Abreast:
             order = instances(spec)
             if not is_same_structure(pattern.board, spec, order):
                 raise Uneven("another structure")
-        leader = next((one for one in self._leaders if one.leads(queue)), None)
+        course = pattern.courses.of(queue)
+        leader = next((one for one in self._leaders if one.course is course), None)
         wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
         wiring = replace(wiring, instances=[*order], p=p, s=s, w=w)
         others: dict[tuple[int, str], set[str]] = {}
@@ -199,7 +200,7 @@ class Abreast:
             if not np.array_equal(np.isfinite(state), np.isfinite(first)):
                 raise Uneven("other numbers without an end")
             packed[:], first[:] = parameters, state
-        board = Lane(spec, wiring, self._folds[:, :, lane], queue, leader)
+        board = Lane(spec, wiring, self._folds[:, :, lane], queue, course, leader)
         if leader is None:
             self._leaders.append(board)
         return board

@@ -12,6 +12,7 @@ from core.block import BlockParams, Context, FloatArray, IntArray, Oscillator
 from core.board import steps
 from core.board.board import Board
 from core.board.commands import SetValues
+from core.board.course import Courses
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
@@ -64,6 +65,8 @@ class Pattern:
         packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
         self._addresses: dict[int, int] = {}
+        self.courses = Courses()
+        """What the commands of boards change, worked out once."""
 
     def address(self, row: int) -> int:
         """Return the address of the step of a row, for all boards."""
