@@ -214,11 +214,14 @@ class Abreast:
             When commands have made their structures different.
         """
         tripped = [False] * len(self.boards)
+        for board in self._leaders:
+            board.use()
         while self.tick < samples and not all(tripped):
             moments = [board.pending.next_tick for board in self._leaders]
             if self.tick in moments:
                 for board in self._leaders:
                     board.carry_out_due()
+                    board.use()
                 self._link()
                 moments = [board.pending.next_tick for board in self._leaders]
             look = lost.next_look(self.tick)
@@ -227,8 +230,6 @@ class Abreast:
             self.tick += ran
             for board in self.boards:
                 board.tick = self.tick
-            for board in self._leaders:
-                board.used |= {*board.spec.driving.values(), board.spec.measuring}
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
             if self.tick == look and not np.isfinite(self._s).all():
                 stopped |= [bool(lost.lost(board.wiring, board.spec)) for board in self.boards]

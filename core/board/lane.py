@@ -131,6 +131,10 @@ class Lane(Board):
         self.wiring.instances[row.number] = instance
         self.wiring.p[start : start + len(row.numbers)] = row.numbers if is_shared else instance.packed(context)
 
+    def use(self) -> None:
+        """Note the controllers and the sensor that are in use from now on."""
+        self.used |= {*self.spec.driving.values(), self.spec.measuring}
+
     def tell_faults(self) -> None:
         """Tell the lanes that follow which faults there are at the end."""
         for lane in self.followers:
