@@ -14,18 +14,11 @@ import numpy as np
 
 from core.block import FloatArray, IntArray
 from core.board import lost, program
+from core.board.facts import has_same_blocks, is_alike, numbers, unlike
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
-from core.board.pattern import (
-    Pattern,
-    Uneven,
-    has_same_blocks,
-    is_alike,
-    is_same_structure,
-    numbers,
-    unlike,
-)
+from core.board.pattern import Pattern, Uneven, is_same_structure
 from core.board.pending import PendingQueue
 from core.board.program import EVERY, walk
 from core.board.spec import Spec

@@ -29,7 +29,7 @@ from core.board.segments import SharedSegment
 from core.board.spec import Section, Spec
 from core.board.supervision import Consequence
 from core.board.walk import Walk
-from core.board.wiring import Wiring, wire
+from core.board.wired import wired
 from core.errors import InputError
 from core.loop.score import Scores
 from core.plant.record import supply
@@ -74,8 +74,7 @@ class Board:
         self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)
         self.base: Document = copy.deepcopy(self.spec.document)
         self.compiled, self.fuses = compiled, False
-        self.wiring: Wiring = wire(self.spec)
-        self.tick = 0
+        self.tick, self.wiring = 0, wired(self.spec)
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.consequences: list[Consequence] = []  # acts of the supervisor; a replay derives them

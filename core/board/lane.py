@@ -8,9 +8,9 @@ from core.board import changes
 from core.board.board import Board
 from core.board.commands import Command, HealFaults, Inject
 from core.board.course import ChangedRow, Course, CourseStep
+from core.board.facts import numbers, unlike
 from core.board.fold import Words
 from core.board.log import Log, LogEntry
-from core.board.pattern import numbers, unlike
 from core.board.pending import PendingQueue
 from core.board.program import EVERY, P_OFFSET
 from core.board.spec import Spec
