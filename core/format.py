@@ -181,6 +181,7 @@ def labels_on(scale: UnitScale, ticks: Sequence[float]) -> list[str]:
     return [format_number(tick, decimals) + (scale.exponent if tick else "") for tick in shown]
 
 
+@cache
 def unit_text(unit: str) -> str:
     """Return a unit the way people write it; numbers without one, and mixed vectors, have none."""
     if unit in ("", "1", "mixed"):

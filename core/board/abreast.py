@@ -14,18 +14,11 @@ import numpy as np
 
 from core.block import FloatArray, IntArray
 from core.board import lost, program
+from core.board.facts import has_same_blocks, is_alike, numbers, unlike
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
-from core.board.pattern import (
-    Pattern,
-    Uneven,
-    has_same_blocks,
-    is_alike,
-    is_same_structure,
-    numbers,
-    unlike,
-)
+from core.board.pattern import Pattern, Uneven, is_same_structure
 from core.board.pending import PendingQueue
 from core.board.program import EVERY, walk
 from core.board.spec import Spec
@@ -177,7 +170,8 @@ class Abreast:
             order = instances(spec)
             if not is_same_structure(pattern.board, spec, order):
                 raise Uneven("another structure")
-        leader = next((one for one in self._leaders if one.leads(queue)), None)
+        course = pattern.courses.of(queue)
+        leader = next((one for one in self._leaders if one.course is course), None)
         wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
         wiring = replace(wiring, instances=[*order], p=p, s=s, w=w)
         others: dict[tuple[int, str], set[str]] = {}
@@ -199,7 +193,7 @@ class Abreast:
             if not np.array_equal(np.isfinite(state), np.isfinite(first)):
                 raise Uneven("other numbers without an end")
             packed[:], first[:] = parameters, state
-        board = Lane(spec, wiring, self._folds[:, :, lane], queue, leader)
+        board = Lane(spec, wiring, self._folds[:, :, lane], queue, course, leader)
         if leader is None:
             self._leaders.append(board)
         return board
@@ -213,11 +207,14 @@ class Abreast:
             When commands have made their structures different.
         """
         tripped = [False] * len(self.boards)
+        for board in self._leaders:
+            board.use()
         while self.tick < samples and not all(tripped):
             moments = [board.pending.next_tick for board in self._leaders]
             if self.tick in moments:
                 for board in self._leaders:
                     board.carry_out_due()
+                    board.use()
                 self._link()
                 moments = [board.pending.next_tick for board in self._leaders]
             look = lost.next_look(self.tick)
@@ -226,8 +223,6 @@ class Abreast:
             self.tick += ran
             for board in self.boards:
                 board.tick = self.tick
-            for board in self._leaders:
-                board.used |= {*board.spec.driving.values(), board.spec.measuring}
             stopped = self._w[self._trip, : len(self.boards)] != 0.0
             if self.tick == look and not np.isfinite(self._s).all():
                 stopped |= [bool(lost.lost(board.wiring, board.spec)) for board in self.boards]

@@ -22,13 +22,14 @@ from core.board.lost import EVERY, Lost, lost, next_look
 from core.board.observer import Finding, Observer
 from core.board.parse import parse
 from core.board.pending import PendingCommand, PendingQueue
+from core.board.pyramid import WIDEST
 from core.board.rows import Rows
 from core.board.scoring import scores
 from core.board.segments import SharedSegment
 from core.board.spec import Section, Spec
 from core.board.supervision import Consequence
 from core.board.walk import Walk
-from core.board.wiring import Wiring, wire
+from core.board.wired import wired
 from core.errors import InputError
 from core.loop.score import Scores
 from core.plant.record import supply
@@ -73,8 +74,7 @@ class Board:
         self.spec: Spec = bench if isinstance(bench, Spec) else parse(bench)
         self.base: Document = copy.deepcopy(self.spec.document)
         self.compiled, self.fuses = compiled, False
-        self.wiring: Wiring = wire(self.spec)
-        self.tick = 0
+        self.tick, self.wiring = 0, wired(self.spec)
         self.log = Log()  # a live bench replaces it with its own log
         self.done: list[tuple[int, Command]] = []  # each with the tick at which it took effect
         self.consequences: list[Consequence] = []  # acts of the supervisor; a replay derives them
@@ -147,7 +147,7 @@ class Board:
         Pending commands take effect at the edges of the ticks they wait for, whatever the chunks. A block that has lost
         its state trips the board at the next whole multiple of `EVERY` ticks.
         """
-        first, idle = self.tick, self._advance(n, None)
+        first, idle = self.tick, self._advance(min(n, CHUNK), None)
         return Rows(first, done := self.tick - first, self._outputs[:done], self._taps[:done], idle)
 
     @property
@@ -156,14 +156,13 @@ class Board:
         return self.compiled
 
     def advance_into(self, history: History, n: int) -> KeptTicks:
-        """Advance a board that ``keeps`` in the same way, with the ticks in a history instead of rows."""
-        first = self.tick
-        self._advance(n, history)
+        """Advance a board that ``keeps``, into a history instead of rows; at most ``WIDEST`` ticks, which each has."""
+        first, _ = self.tick, self._advance(min(n, WIDEST), history)
         return KeptTicks(first, self.tick - first, history)
 
     def _advance(self, n: int, history: History | None) -> BoolArray:
         """Run ticks, and return the taps that stayed 0 throughout."""
-        first, end = self.tick, self.tick + min(n, CHUNK, self._left())
+        first, end = self.tick, self.tick + self._playable(n)
         self.walk.join()
         idle = self.walk.idle
         while self.tick < end:
@@ -189,12 +188,12 @@ class Board:
                 self._trip(f"the state of {self.lost.block} has not been finite since sample {self.lost.tick}")
         return idle
 
-    def _left(self) -> int:
-        """Return the ticks that the plant can still play; at the end of a record the board trips."""
-        left = CHUNK if self.spec.record is None else self.spec.record.samples - self.tick
-        if left <= 0 and self.trip is None:
+    def _playable(self, n: int) -> int:
+        """Return how many of some ticks the plant can still play; at the end of a record the board trips."""
+        left = n if self.spec.record is None else self.spec.record.samples - self.tick
+        if left <= 0 < n and self.trip is None:
             self._trip("the record has ended")
-        return left
+        return min(n, left)
 
     def _supply(self, n: int) -> None:
         """Give the plant the samples of the next ticks, where it is a record."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from itertools import zip_longest
+from collections.abc import Sequence
 
 from core.board import changes
 from core.board.board import Board
 from core.board.commands import Command, HealFaults, Inject
+from core.board.course import ChangedRow, Course, CourseStep
+from core.board.facts import numbers, unlike
 from core.board.fold import Words
-from core.board.instances import Instance
 from core.board.log import Log, LogEntry
-from core.board.pattern import numbers, unlike
 from core.board.pending import PendingQueue
-from core.board.program import P_OFFSET
+from core.board.program import EVERY, P_OFFSET
 from core.board.spec import Spec
 from core.board.wiring import Wiring
 from core.loop.score import Scores
@@ -22,8 +22,9 @@ class Lane(Board):
     """A board whose arrays are columns of the arrays of all boards; it keeps no log.
 
     A lane with the same waiting faults as an earlier lane follows it: the leader carries out the commands, and its
-    followers take over the changes. They share all of its wiring but the numbers and parameters. ``specs`` holds the
-    benches of the lane, each with its first tick; faults alone make no new one.
+    followers take over the changes. They share all of its wiring but the numbers and parameters. A leader takes over
+    the changes of earlier boards with the same waiting faults in the same way. ``specs`` holds the benches of the lane,
+    each with its first tick; faults alone make no new one.
 
     Parameters
     ----------
@@ -35,20 +36,29 @@ class Lane(Board):
         Its folds.
     pending : Queue
         The commands that wait.
+    course : Course
+        What the commands change, as far as it is known.
     leader : Lane, optional
         The lane it follows.
     """
 
     def __init__(
-        self, spec: Spec, wiring: Wiring, folds: Words, pending: PendingQueue, leader: Lane | None = None
+        self,
+        spec: Spec,
+        wiring: Wiring,
+        folds: Words,
+        pending: PendingQueue,
+        course: Course,
+        leader: Lane | None = None,
     ) -> None:
         self.spec, self.wiring, self.folds, self.pending = spec, wiring, folds, pending
         self.base = spec.document
         self.compiled, self.tick, self.trip, self.lost = True, 0, None, None
         self.log, self.done, self.consequences, self.used = Log(), [], [], set()
         self.followers: list[Lane] = []
+        self.course = course
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
-        self._unlike: dict[tuple[int, str], set[str]] = {}
+        self._unlike: dict[int, set[str]] = {}
         self._scores: tuple[int, dict[str, Scores]] | None = None
         if leader is not None:
             leader.followers.append(self)
@@ -60,31 +70,70 @@ class Lane(Board):
             self._scores = self.tick, super().scores()
         return self._scores[1]
 
-    def leads(self, pending: PendingQueue) -> bool:
-        """Say whether another lane has the same waiting commands as this lane, all of them for faults."""
-        return all(
-            one is not None
-            and other is not None
-            and (one is other or (one.tick, one.command) == (other.tick, other.command))
-            and isinstance(one.command, Inject | HealFaults)
-            for one, other in zip_longest(self.pending, pending)
-        )
-
     def link(self) -> None:
         """Leave it to all boards together."""
 
     def carry_out_due(self) -> None:
         """Carry out the commands due at this tick, here and in the lanes that follow."""
-        before, done = self.wiring.instances, len(self.done)
+        step = self.course.get(self.tick)
+        if step is None:
+            step = self._carry_out()
+            lanes: Sequence[Lane] = self.followers
+        else:
+            self.pending.take_due(self.tick)
+            self.spec = self.spec.with_faults(step.faults)
+            self.done += step.commands
+            lanes = [self, *self.followers]
+            for row in step.rows:
+                self._take_turns(row)
+        for row in step.rows:
+            for lane in lanes:
+                lane._take(row)
+
+    def _carry_out(self) -> CourseStep:
+        """Carry out the commands due here; note what they change, if all of them are for faults and none is refused."""
+        before, done, waiting = self.wiring.instances, len(self.done), len([*self.pending])
         self.apply_due()
-        if not all(isinstance(command, Inject | HealFaults) for _, command in self.done[done:]):
+        commands, now = self.done[done:], self.wiring.instances
+        changed = [row for row, instance in enumerate(now) if instance is not before[row] and instance != before[row]]
+        step = CourseStep(self.spec.faults, commands, [self._changed(row) for row in changed])
+        if all(isinstance(command, Inject | HealFaults) for _, command in commands):
+            if len(commands) == waiting - len([*self.pending]):
+                self.course[self.tick] = step
+        else:
             if self.specs[-1][0] == self.tick:
                 self.specs.pop()
             self.specs.append((self.tick, self.spec))
-        now = self.wiring.instances
-        changed = [row for row, instance in enumerate(now) if instance is not before[row] and instance != before[row]]
-        for row in changed:
-            self._hand_on(row, now[row])
+        return step
+
+    def _changed(self, row: int) -> ChangedRow:
+        """Return a row as it is now, and the facts its numbers are made of."""
+        instance, wiring = self.wiring.instances[row], self.wiring
+        own, _, read = numbers(instance, self.spec)
+        every, context = int(wiring.table[row, EVERY]), self.spec.context(instance.every, instance.axis)
+        return ChangedRow(row, instance, context, own, read, every, wiring.absent[row])
+
+    def _take_turns(self, row: ChangedRow) -> None:
+        """Let a row run as often as it does now, or not at all."""
+        wiring = self.wiring
+        if (wiring.table[row.number, EVERY], wiring.absent[row.number]) != (row.every, row.is_absent):
+            wiring.table[row.number, EVERY], wiring.absent[row.number] = row.every, row.is_absent
+            wiring.is_changed = True
+
+    def _take(self, row: ChangedRow) -> None:
+        """Take over the parameters of a row: the same ones, unless the facts that they are made of differ."""
+        instance = row.instance
+        context = self.spec.context(instance.every, instance.axis)
+        if id(row.context) not in self._unlike:
+            self._unlike[id(row.context)] = unlike(context, row.context)
+        is_shared = self._unlike[id(row.context)].isdisjoint(row.read)
+        start = int(self.wiring.table[row.number, P_OFFSET])
+        self.wiring.instances[row.number] = instance
+        self.wiring.p[start : start + len(row.numbers)] = row.numbers if is_shared else instance.packed(context)
+
+    def use(self) -> None:
+        """Note the controllers and the sensor that are in use from now on."""
+        self.used |= {*self.spec.driving.values(), self.spec.measuring}
 
     def tell_faults(self) -> None:
         """Tell the lanes that follow which faults there are at the end."""
@@ -99,20 +148,6 @@ class Lane(Board):
             lane.wiring.put_to_rest(lane.spec, self.wiring.resting - before)
             lane.wiring.resting = self.wiring.resting
         return running
-
-    def _hand_on(self, row: int, instance: Instance) -> None:
-        """Give the followers the parameters of a row: the leader's, unless the facts they are made of differ."""
-        place = instance.every, instance.axis
-        context = self.spec.context(*place)
-        own, _, read = numbers(instance, self.spec)
-        start = int(self.wiring.table[row, P_OFFSET])
-        part = slice(start, start + len(own))
-        for lane in self.followers:
-            if place not in lane._unlike:
-                lane._unlike[place] = unlike(lane.spec.context(*place), context)
-            is_shared = lane._unlike[place].isdisjoint(read)
-            lane.wiring.instances[row] = instance
-            lane.wiring.p[part] = own if is_shared else instance.packed(lane.spec.context(*place))
 
     def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry | None:  # type: ignore[override]
         changes.carry_out(self, command)

@@ -33,6 +33,7 @@ class Walk:
         self.idle = np.zeros(0, np.bool_)
         self.awaited: list[SharedSegment] = []
         self._linked: Wiring | None = None
+        self._addresses: dict[int, int] = {}
         self.parts: list[TablePart] = []
 
     def link(self, wiring: Wiring, spec: Spec) -> None:
@@ -43,14 +44,21 @@ class Walk:
         if wiring is self._linked and running == self.running:
             self._rows[:, program.EVERY] = wiring.table[running, program.EVERY]
         else:
+            if wiring is not self._linked:
+                self._addresses = {}
             self._linked, self.running = wiring, running
             self._rows = wiring.table[running]
             self.idle = wiring.idle(running)
             if self.compiled:
-                self._rows[:, program.ADDRESS] = [steps.address(wiring, row) for row in running]
+                self._rows[:, program.ADDRESS] = [self._address(wiring, row) for row in running]
             else:
                 self.steps = [wiring.bound(row) for row in running]
         self._find_parts(wiring)
+
+    def _address(self, wiring: Wiring, row: int) -> int:
+        if row not in self._addresses:
+            self._addresses[row] = steps.address(wiring, row)
+        return self._addresses[row]
 
     def fuse(self, wiring: Wiring) -> None:
         """Run each segment as one function from now on, if its code is loaded."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.block import BoolArray, FloatArray, IntArray
 from core.board import program
+from core.board.facts import numbers
 from core.board.instances import Instance, feeds_forward, instances
 from core.board.spec import Spec
 from core.board.stages import behind
@@ -144,7 +145,7 @@ class Wiring:
         return idle[self.tap_rows]
 
 
-def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
+def wire(spec: Spec, like: Wiring | None = None, read: list[set[str]] | None = None) -> Wiring:
     """Lay out the arrays of a bench and connect its ports.
 
     Parameters
@@ -153,6 +154,8 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
         The bench, with the faults that act.
     like : Wiring, optional
         Of a bench with the same signals.
+    read : list, optional
+        Receives for each row which facts of the bench its numbers are made of.
     """
     order = instances(spec)
     if like is not None and [entry.block for entry in order] == [entry.block for entry in like.instances]:
@@ -163,9 +166,12 @@ def wire(spec: Spec, like: Wiring | None = None) -> Wiring:
     p_parts, s_parts, io_parts = [], [], []
     p_size = s_size = io_size = 0
     for row, instance in enumerate(order):
-        context = spec.context(instance.every, instance.axis)
-        p = instance.packed(context)
-        s = instance.block.initial(instance.params, context)
+        if read is not None:
+            p, s, facts = numbers(instance, spec)
+            read.append(facts)
+        else:
+            context = spec.context(instance.every, instance.axis)
+            p, s = instance.packed(context), instance.block.initial(instance.params, context)
         io = ports_of(spec, instance, index)
         table[row, 1:] = (p_size, s_size, io_size, every_of(instance))
         p_parts.append(p)

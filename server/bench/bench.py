@@ -38,8 +38,11 @@ from server.metrics import Metrics
 if TYPE_CHECKING:
     from server.bench.replay import TickSource
 
-SLICE_S = 0.005
-"""Longest slice, by the time of a tick; other benches and commands wait for it."""
+SLICE_S = 0.002
+"""Longest slice, by the time of a tick; other benches and commands wait for it.
+
+Each slice costs a tenth of a millisecond beside its ticks, so a bench has the ticks of a round in one, if it can.
+"""
 MOST_SLOWER = 4.0
 """Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 

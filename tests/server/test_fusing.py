@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
+import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -27,8 +29,10 @@ SWITCH = {"switch": "pid"}
 def worth_it(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     """Forget loaded code and failures; benches are too short until `look` counts them as long."""
     monkeypatch.setattr(fusing, "LONG", 1 << 60)
+    monkeypatch.setattr(fusing, "SHORT", 1 << 60)
     monkeypatch.setattr(segments, "_shared", WeakValueDictionary())
     monkeypatch.setattr(live.service.fusing, "_failed", set())
+    monkeypatch.setattr(live.service.fusing, "_unkept", set())
 
 
 @pytest.fixture
@@ -54,10 +58,11 @@ def bench_of(live: Live, **fields: Any) -> tuple[str, Any]:
     return bench, live.service.benches.get(bench)
 
 
-def look(live: Live, long: int = 0) -> None:
-    """Look once, with benches that are long enough from some ticks on."""
+def look(live: Live, long: int = 0, short: int | None = None) -> None:
+    """Look once, with benches that are long enough from some ticks on, for code that is kept from fewer on."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fusing, "LONG", long)
+        patch.setattr(fusing, "SHORT", long if short is None else short)
         live.on_loop(live.service.fusing.look())
 
 
@@ -123,6 +128,31 @@ def test_only_benches_that_run_for_long_are_looked_at(live: Live, here: dict[str
     live.advance(bench=bench, ticks=300)
     look(live, short.board.tick + 1)
     assert not paused.board.fuses and not short.board.fuses and here["calls"] == 0
+
+
+def test_a_shorter_bench_takes_the_code_that_is_kept_and_has_none_compiled(
+    live: Live, here: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: dict[Any, bytes] = {}
+    monkeypatch.setattr(fusing, "kept_code_of", kept.get)
+    bench, session = bench_of(live)
+    live.advance(bench=bench, ticks=300)
+    for _ in range(2):  # code that no shelf has is looked for once
+        look(live, 1 << 60, 300)
+        assert session.board.unfused and here["calls"] == len(session.board.unfused)
+    monkeypatch.setattr(live.service.fusing, "_unkept", set())
+    kept.update((segment.steps, code_of(segment.steps)) for segment in session.board.unfused)
+    look(live, 1 << 60, 300)
+    assert not session.board.unfused
+    live.advance(bench=bench, ticks=300)
+    assert session.board.digest() == straight(session.board.tick)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the policy is of Linux")
+def test_every_other_thread_comes_before_the_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fusing, "code_of", lambda _: bytes([os.sched_getscheduler(0)]))
+    assert fusing.compiled_behind(()) == bytes([os.SCHED_IDLE])
+    assert os.sched_getscheduler(0) == os.SCHED_OTHER
 
 
 def test_benches_with_the_same_blocks_share_the_code(live: Live, here: dict[str, Any]) -> None:

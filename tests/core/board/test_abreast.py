@@ -13,8 +13,9 @@ from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.commands import parse_command
 from core.board.document import with_values
+from core.board.facts import unlike
 from core.board.parse import parse
-from core.board.pattern import Pattern, Uneven, unlike
+from core.board.pattern import Pattern, Uneven
 from core.compile import code
 from core.compile.machine import WIDTH
 from tests.lab import AXES_RICH, RICH

@@ -14,6 +14,7 @@ from core.board import kept, program
 from core.board.board import CHUNK, Board
 from core.board.history import History
 from core.board.kept import KeptTicks
+from core.board.pyramid import WIDEST
 from core.board.rows import Rows
 from core.board.stored import revived, stored
 from core.errors import InputError
@@ -22,7 +23,7 @@ from scenarios.run import build, run
 from tests.core.board.test_lost import DIVERGES, REASON
 from tests.lab import RICH, STORY, do, make
 
-SLICES = (1, 7, 64, CHUNK)
+SLICES = (1, 7, 64, CHUNK, 3 * CHUNK + 100)
 COMMANDS: tuple[dict[str, Any], ...] = (
     {"fault": "added_mass", "severity": 0.05},
     {"fault": "damping", "severity": 0.3, "when": "plant.displacement > 0.05"},
@@ -44,6 +45,17 @@ def empty(board: Board, ticks: int = 1) -> History:
 
 def entries(board: Board) -> list[Any]:
     return [(one.tick, one.actor, one.kind, one.text, one.old, one.new) for one in board.log]
+
+
+def in_rows(board: Board, history: History, n: int) -> Any:
+    """Advance a board chunk by chunk with rows, until it trips; return its samples."""
+    columns, found = np.arange(len(board.signals)), []
+    while n > 0:
+        rows = board.advance(n)
+        history.append(rows)
+        found.append(rows.singles(columns, 0, rows.count))
+        n = n - rows.count if rows.count == min(n, CHUNK) else 0
+    return np.hstack(found)
 
 
 def same(one: Board, other: Board) -> None:
@@ -83,13 +95,12 @@ def test_ticks_in_a_history_are_the_ticks_of_rows_to_the_bit(deeds: list[Any]) -
     histories = [empty(board) for board in boards]
     for deed in [*deeds, 64]:
         if isinstance(deed, int):
-            rows, ticks = boards[0].advance(deed), boards[1].advance_into(histories[1], deed)
-            assert (rows.first_tick, rows.count) == (ticks.first_tick, ticks.count)
-            if rows.count:
-                histories[0].append(rows)
+            first = boards[0].tick
+            samples, ticks = in_rows(boards[0], histories[0], deed), boards[1].advance_into(histories[1], deed)
+            assert (first, boards[0].tick - first) == (ticks.first_tick, ticks.count)
+            if ticks.count:
                 columns = np.arange(len(boards[0].signals))
-                found = [one.singles(columns, 0, rows.count) for one in (rows, ticks)]
-                np.testing.assert_array_equal(*found)
+                np.testing.assert_array_equal(samples, ticks.singles(columns, 0, ticks.count))
         elif isinstance(deed, dict):
             for board in boards:
                 with suppress(InputError):
@@ -119,7 +130,7 @@ def test_commands_between_ticks_take_effect_where_they_do_with_rows(ticks: int) 
     histories = [empty(board) for board in boards]
     while boards[0].tick < 600:
         n = min(ticks, 600 - boards[0].tick)
-        histories[0].append(boards[0].advance(n))
+        in_rows(boards[0], histories[0], n)
         boards[1].advance_into(histories[1], n)
     same(*boards)
     same_past(*histories)
@@ -135,6 +146,14 @@ def test_a_lost_state_trips_the_board_where_it_does_with_rows(ticks: int) -> Non
         pass
     assert boards[1].trip is not None and boards[1].trip.reason == REASON
     same(*boards)
+
+
+def test_a_slice_is_never_longer_than_what_each_history_keeps() -> None:
+    board = make(base=RICH)
+    history = empty(board)
+    assert board.advance_into(history, 3 * WIDEST).count == WIDEST
+    assert board.advance_into(history, 3 * WIDEST).count == WIDEST
+    assert history.end_tick - history.first_tick >= WIDEST
 
 
 def test_a_full_history_goes_round_and_begins_anew_after_a_jump() -> None:

@@ -125,10 +125,10 @@ def test_a_long_step_is_taken_in_slices_with_commands_between() -> None:
     assert (bench.time.pacer.overruns, bench.status.state, bench.status.achieved_scale) == (0, "running", 0.0)
     assert not asked.done()
     bench.execute(parse({"kind": "pause"}), "test")
-    assert asked.result(0).text == "stepped 1024 of 5000 ticks" and asked.result(0).tick == 0
+    assert asked.result(0).text == "stepped 4608 of 5000 ticks" and asked.result(0).tick == 0
     assert behind.result(0).text == "stepped 0 of 3 ticks"
     assert kinds(bench)[-3:] == ["step", "step", "pause"]
-    assert not bench.is_running and bench.status.state == "paused" and bench.board.tick == 1024
+    assert not bench.is_running and bench.status.state == "paused" and bench.board.tick == 512 + 4096
     saved = Scenario.load(document_of(bench))
     assert run(saved).digest == bench.board.digest()
 
@@ -166,7 +166,7 @@ def test_a_step_that_is_refused_does_not_pause() -> None:
 
 @pytest.mark.parametrize("steps", [False, True])
 def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
-    """At 2^-16 s a tick 5 ms are 327 ticks; after a wait of 128 times that the next has a fourth, then all."""
+    """At 2^-17 s a tick 2 ms are 262 ticks; after a wait of 128 times that the next has a fourth, then all."""
     now = [0.0]
     scenario = get("ch5-seven-step")
     bench = LiveBench(scenario, build(scenario), None, 20_000, Metrics(), lambda: now[0])
@@ -176,7 +176,7 @@ def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
     def slow(history: History, n: int) -> Any:
         ticks = type(board).advance_into(board, history, n)
         ran.append(ticks.count)
-        now[0] += ticks.count * 2.0 ** (-16 if len(ran) != 3 else -9)
+        now[0] += ticks.count * 2.0 ** (-17 if len(ran) != 3 else -10)
         return ticks
 
     board.advance_into = slow  # type: ignore[method-assign]
@@ -185,7 +185,7 @@ def test_a_slice_of_a_slow_bench_is_short(steps: bool) -> None:
         step(bench, ticks=1600)
     for _ in range(5):
         bench.time.slice(None)
-    assert ran == [512, 327, 327, 81, 327]
+    assert ran == [512, 262, 262, 65, 262]
 
 
 class TakesAll:
