@@ -122,12 +122,12 @@ it("shows motion, rate and parameters of a device with two axes", async () => {
   expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
     "500 nm± 1.00 pm",
     "10.0 nm± 2.00 pm",
-    "300 °/s± 1.50 °/s",
+    "300 deg/s± 1.50 deg/s",
     "× 1.000",
     "× 1.000",
     "× 2.000",
     "× 1.010",
-    "500 °/s",
+    "500 deg/s",
   ]);
 });
 
