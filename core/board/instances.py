@@ -11,8 +11,10 @@ from core.board.library import PLAIN, Library
 from core.board.spec import Section, Spec
 from core.board.stages import stages
 from core.diagnose.arx import ArxBank
+from core.diagnose.axes_bank import AxesBank
 from core.diagnose.hypothesis import ModelList
 from core.diagnose.kalman import KalmanBank
+from core.diagnose.moving_bank import MovingBank
 from core.errors import InputError
 from core.identify.estimator import Estimator
 from core.loop.axes_score import AxesScore
@@ -23,6 +25,8 @@ from core.loop.estimate_score import EstimateScore
 from core.loop.measurement import Measurement
 from core.loop.record_score import RecordScore
 from core.loop.score import Score
+from core.loop.weighted_axes import WeightedAxes
+from core.loop.weighted_filters import WeightedFilters
 from core.loop.weighted_parameters import WeightedParameters
 from core.loop.weighted_state import WeightedState
 
@@ -86,7 +90,8 @@ def instances(spec: Spec) -> list[Instance]:
     for name, section in spec.diagnosers.items():
         order.append(_waiting(spec, name, section))
         if scored(section.block):
-            order += [_scoring(spec, name, section), *_estimating(spec, name, section)]
+            order.append(_scoring(spec, name, section))
+        order += _estimating(spec, name, section)
     order += [_usual(name, section) for name, section in spec.supervisors.items()]
     if spec.axes:
         order += [_usual(name, section) for name, section in spec.generators.items()]
@@ -172,16 +177,22 @@ def _scoring(spec: Spec, name: str, section: Section) -> Instance:
 
 def _estimating(spec: Spec, name: str, section: Section) -> list[Instance]:
     """Return the blocks that weigh the models of a diagnoser, as far as its models have states and parameters."""
-    if section.block.axes:
-        return []
     has_equations = issubclass(section.block, ArxBank)
-    has_states = has_equations or issubclass(section.block, KalmanBank)
-    weighing = WeightedState if has_states else WeightedParameters
     every = spec.turns(section)
-    found = [Instance(weighted(name), weighted(name), weighing, section.params, every)]
+    found = []
     if has_equations:  # a bank of filters puts out its states itself
-        found.insert(0, Instance(f"{name}.states", name, DifferenceStates, section.params, every))
-    return found
+        found.append(Instance(f"{name}.states", name, DifferenceStates, section.params, every))
+    if issubclass(section.block, MovingBank):
+        weighing: type[Block] = WeightedFilters
+    elif not scored(section.block):
+        return []
+    elif issubclass(section.block, AxesBank):
+        weighing = WeightedAxes
+    elif section.block.axes:
+        return []
+    else:
+        weighing = WeightedState if has_equations or issubclass(section.block, KalmanBank) else WeightedParameters
+    return [*found, Instance(weighted(name), weighted(name), weighing, section.params, every)]
 
 
 def weighted(name: str) -> str:
@@ -189,6 +200,9 @@ def weighted(name: str) -> str:
     return f"{name}.weighted"
 
 
+WEIGHING = (WeightedParameters, WeightedState, WeightedFilters, WeightedAxes, DifferenceStates)
+
+
 def weighing_blocks(order: Iterable[Instance]) -> set[str]:
     """Return the blocks among these that only weigh the models of diagnosers."""
-    return {one.key for one in order if one.block in (WeightedParameters, WeightedState, DifferenceStates)}
+    return {one.key for one in order if one.block in WEIGHING}

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from core.block import Context, Equation, Stage, parameter
 from core.device.two_axis import TwoAxis
-from core.diagnose.axes_filter import AxesFilter, correct, is_seen, predict
+from core.diagnose.axes_filter import AxesFilter, correct, is_seen, predict, variance_of
 from core.diagnose.axes_hypothesis import AxesModels
 from core.diagnose.axes_model import FORCES, AxesModel, fill
 from core.diagnose.bank import Bank
@@ -154,6 +154,19 @@ class AxesBank(Bank):
         covariance_y: Vector = tap("um^2", "the same along y", each="hypotheses")
         nis: Vector = tap("1", "half the normalised residual squared, 1 on average for a true model", each="hypotheses")
         rate: Vector = tap("deg/s", "rate under the hypothesis", each="hypotheses")
+        state_x: Vector = tap("um", "displacement along x under the hypothesis", each="hypotheses")
+        state_y: Vector = tap("um", "displacement along y under the hypothesis", each="hypotheses")
+        state_x_velocity: Vector = tap("um/ms", "velocity along x under the hypothesis", each="hypotheses")
+        state_y_velocity: Vector = tap("um/ms", "velocity along y under the hypothesis", each="hypotheses")
+        variance_x: Vector = tap("um^2", "variance of the displacement along x", each="hypotheses", hidden=True)
+        variance_y: Vector = tap("um^2", "variance of the displacement along y", each="hypotheses", hidden=True)
+        variance_x_velocity: Vector = tap(
+            "um^2/ms^2", "variance of the velocity along x", each="hypotheses", hidden=True
+        )
+        variance_y_velocity: Vector = tap(
+            "um^2/ms^2", "variance of the velocity along y", each="hypotheses", hidden=True
+        )
+        variance_rate: Vector = tap("deg^2/s^2", "variance of the rate", each="hypotheses", hidden=True)
         gain_x_x: Vector = tap("1", "Kalman gain of the displacement along x by residual_x", each="hypotheses")
         gain_x_y: Vector = tap("1", "Kalman gain of the displacement along x by residual_y", each="hypotheses")
         gain_y_x: Vector = tap("1", "Kalman gain of the displacement along y by residual_x", each="hypotheses")
@@ -242,6 +255,15 @@ class AxesBank(Bank):
             x.covariance_y[i] = f.psi_y
             x.nis[i] = f.nis
             x.rate[i] = DPS * f.rate
+            x.state_x[i] = f.motion[0]
+            x.state_y[i] = f.motion[1]
+            x.state_x_velocity[i] = f.motion[2]
+            x.state_y_velocity[i] = f.motion[3]
+            x.variance_x[i] = variance_of(p.models[i], f, 0)
+            x.variance_y[i] = variance_of(p.models[i], f, 1)
+            x.variance_x_velocity[i] = variance_of(p.models[i], f, 2)
+            x.variance_y_velocity[i] = variance_of(p.models[i], f, 3)
+            x.variance_rate[i] = DPS * DPS * f.variance
             x.gain_x_x[i] = f.gain[0]
             x.gain_x_y[i] = f.gain[1]
             x.gain_y_x[i] = f.gain[2]

@@ -102,6 +102,12 @@ def correct(m: AxesModel, f: AxesFilter, x: float, y: float) -> float:
 
 
 @kernel
+def variance_of(m: AxesModel, f: AxesFilter, i: int) -> float:
+    r"""Return the variance of a corrected state, :math:`P_{0,ii}+V_i^2M`."""
+    return float(m.variance[i] + f.sensitivity[i] * f.sensitivity[i] * f.variance)
+
+
+@kernel
 def is_seen(x: float, y: float) -> bool:
     """Say whether both displacements were measured."""
     return math.isfinite(x) and math.isfinite(y)

@@ -23,13 +23,15 @@ class AxesModel(Record):
     """Transition of (x, y, x', y') over a tick, its change with the rate, effect of the forces, gain, covariance.
 
     Matrices are stored row by row. The forces are the forces at the start of the tick and their changes until its
-    middle and its end, first along x. The covariance of the residuals holds for a known rate.
+    middle and its end, first along x. The covariance of the residuals and the variances of the corrected states hold
+    for a known rate.
     """
 
     phi: Vector = vector(STATES * STATES)
     turn: Vector = vector(STATES * STATES)
     push: Vector = vector(STATES * FORCES)
     gain: Vector = vector(STATES * 2)
+    variance: Vector = vector(STATES)
     psi_x: float
     psi_xy: float
     psi_y: float
@@ -84,10 +86,16 @@ def force_noise(device: TwoAxis, assumed_un: tuple[float, float], context: Conte
     return covariance
 
 
-def steady(
-    tick: AxesTick, forces: FloatArray, noise_um: float, omega: float, ticks: int
-) -> tuple[FloatArray, FloatArray]:
-    r"""Return gain and residual covariance in the limit, for displacements measured every ``ticks`` ticks.
+class SteadyFilter(NamedTuple):
+    """A filter in the limit: gain, covariance of the residuals, variances of the corrected states."""
+
+    gain: FloatArray
+    psi: FloatArray
+    variances: FloatArray
+
+
+def steady(tick: AxesTick, forces: FloatArray, noise_um: float, omega: float, ticks: int) -> SteadyFilter:
+    r"""Return the filter in the limit, for displacements measured every ``ticks`` ticks.
 
     The Riccati equation is solved with displacements over the noise of a measurement and velocities over that times
     :math:`\omega`, where all its numbers are of similar size.
@@ -110,8 +118,9 @@ def steady(
     phi, noise = over_ticks(phi, product(held, forces, held.T), ticks)
     prior = riccati(phi, np.eye(4)[:2], noise + SMALLEST * np.eye(4), np.eye(2))
     psi = prior[:2, :2] + np.eye(2)
-    gain = solved(psi, prior[:2]).T * size[:, None] / noise_um
-    return gain, psi * noise_um * noise_um
+    gain = solved(psi, prior[:2]).T
+    variances = np.diag(prior) - np.sum(gain * prior[:, :2], axis=1)
+    return SteadyFilter(gain * size[:, None] / noise_um, psi * noise_um * noise_um, variances * size * size)
 
 
 def fill(
@@ -125,8 +134,8 @@ def fill(
     """Pack a device with its steady gain, and with the residual covariance of the nominal one."""
     noise, omega = force_noise(nominal, assumed_un, context), nominal.natural_frequency
     tick = over_a_tick(device, context.dt_ms / context.every)
-    gain, _ = steady(tick, noise, noise_um, omega, context.every)
+    own = steady(tick, noise, noise_um, omega, context.every)
     m.phi[:], m.turn[:], m.push[:] = tick.phi.flat, tick.turn.flat, tick.push.flat
-    m.gain[:] = gain.flat
-    _, psi = steady(over_a_tick(nominal, context.dt_ms / context.every), noise, noise_um, omega, context.every)
+    m.gain[:], m.variance[:] = own.gain.flat, own.variances
+    psi = steady(over_a_tick(nominal, context.dt_ms / context.every), noise, noise_um, omega, context.every).psi
     m.psi_x, m.psi_xy, m.psi_y = psi[0, 0], psi[0, 1], psi[1, 1]

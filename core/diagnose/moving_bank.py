@@ -123,6 +123,11 @@ class MovingBank(KalmanBank):
         nis: Vector = tap("1", "normalised residual squared", labels=THREE)
         gain_displacement: Vector = tap("1", "Kalman gain of the displacement", labels=THREE)
         gain_velocity: Vector = tap("1/ms", "Kalman gain of the velocity", labels=THREE)
+        state_displacement: Vector = tap("um", "displacement under the filter", labels=THREE)
+        state_velocity: Vector = tap("um/ms", "velocity under the filter", labels=THREE)
+        variance_displacement: Vector = tap("um^2", "variance of this displacement", labels=THREE, hidden=True)
+        covariance: Vector = tap("um^2/ms", "covariance of displacement and velocity", labels=THREE, hidden=True)
+        variance_velocity: Vector = tap("um^2/ms^2", "variance of this velocity", labels=THREE, hidden=True)
 
     @classmethod
     def floor(cls, params: Any) -> float:
@@ -168,6 +173,11 @@ class MovingBank(KalmanBank):
             x.nis[j] = nis
             x.gain_displacement[j] = s.gain1[i]
             x.gain_velocity[j] = s.gain2[i]
+            x.state_displacement[j] = s.x1[i]
+            x.state_velocity[j] = s.x2[i]
+            x.variance_displacement[j] = s.p11[i]
+            x.covariance[j] = s.p12[i]
+            x.variance_velocity[j] = s.p22[i]
             likelihood = s.log[j]
             if evidence:
                 likelihood += -0.5 * nis - s.half_log[i]

@@ -50,7 +50,7 @@ class ParameterErrors(Record):
 
 @kernel
 def weigh_parameters(p: Models, s: ParameterErrors, x: ParameterPorts, n: int) -> None:
-    """Put out the weighted factors, and add their squared errors; probabilities that are no numbers do not count."""
+    """Put out the weighted factors, and add their squared errors."""
     mass = 0.0
     stiffness = 0.0
     damping = 0.0
@@ -65,6 +65,15 @@ def weigh_parameters(p: Models, s: ParameterErrors, x: ParameterPorts, n: int) -
     x.stiffness = stiffness
     x.damping = damping
     x.gain = gain
+    compare_parameters(s, x)
+
+
+@kernel
+def compare_parameters(s: ParameterErrors, x: ParameterPorts) -> None:
+    """Add the squared errors of the weighted factors; factors that are no numbers do not count."""
+    mass = x.mass
+    stiffness = x.stiffness
+    damping = x.damping
     if math.isfinite(mass + stiffness + damping):
         s.samples += 1.0
         s.mass += (mass - x.mass_scale) * (mass - x.mass_scale)

@@ -12,6 +12,7 @@ from core.board.commands import Inject
 from core.board.document import SUPERVISOR, Document, with_values
 from core.errors import InputError
 from scenarios.measure.errors import rms
+from scenarios.studies.laws import label
 from scenarios.studies.study import Study, StudyPicture
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ CASES = {
     "drive_gain": ("drive_gain", -0.1),
 }
 """Faults and their largest severities; the last two are outside the hypotheses of 5.2.4."""
+AS_WELL = 1.1
+"""A law does as well as another where its error is at most this many times as large."""
 
 
 class FaultTolerance(Study):
@@ -35,6 +38,9 @@ class FaultTolerance(Study):
     ``tolerance.<law>.<fault>.<severity>`` is the rms error in the second half of the time after the fault, over the
     error of the bench's own law without its supervisor; the severity is a percentage of the largest. The error is
     against the true motion, so it has the part that noise causes through the law.
+
+    With several noises the names of the figures end in the noise in nm, and ``tolerance.<law>.as_well.<noise>`` counts
+    the cases of 20 in which a law does as well as the supervised one: its error is at most 1.1 times as large.
     """
 
     title = "Fault tolerance of laws"
@@ -46,34 +52,51 @@ class FaultTolerance(Study):
         runs: int = parameter(1, "seeds of each case, starting at the seed of the bench", ge=1, le=1000)
         pole: float = parameter(1.3, "pole of the PID over w0", gt=0.6, le=5)
         feedforward: float = parameter(1.0, "feed-forward of the PID", ge=0, le=1)
+        noises_um: list[float] = parameter([], "noises of the sensor; its own if there are none", "um")
 
     @classmethod
     def figures(cls, board: Board, params: Any) -> dict[str, float]:
         """Return the ratios of errors."""
-        return {
-            f"tolerance.{law}.{case}.{round(100 * share)}": ratio
-            for case, share, laws in _ratios(board, params)
-            for law, ratio in laws.items()
-        }
+        found: dict[str, float] = {}
+        for noise, base in _benches(board, params):
+            end = f".{noise}" if noise else ""
+            cases = [*_ratios(board, base, params)]
+            for case, share, laws in cases:
+                for law, ratio in laws.items():
+                    found[f"tolerance.{law}.{case}.{round(100 * share)}{end}"] = ratio
+            for law in ("pid", "mrac") if noise else ():
+                as_well = sum(laws[law] <= AS_WELL * laws["supervised"] for _, _, laws in cases)
+                found[f"tolerance.{law}.as_well{end}"] = float(as_well)
+        return found
 
     @classmethod
     def picture(cls, board: Board, params: Any) -> StudyPicture:
         """Return the ratio of each law, in the mean over the faults, over the severity."""
         found: dict[str, dict[float, list[float]]] = {}
-        for _, share, laws in _ratios(board, params):
-            for law, ratio in laws.items():
-                found.setdefault(law, {}).setdefault(100 * share, []).append(ratio)
+        for noise, base in _benches(board, params):
+            for _, share, laws in _ratios(board, base, params):
+                for law, ratio in laws.items():
+                    name = f"{law}, {noise} nm" if noise else law
+                    found.setdefault(name, {}).setdefault(100 * share, []).append(ratio)
         curves = [(law, [*at], [float(np.mean(one)) for one in at.values()]) for law, at in found.items()]
         return StudyPicture(("severity over the largest", "%"), ("error over the fixed law's error", ""), curves)
 
 
-def _ratios(board: Board, params: Any) -> Iterator[tuple[str, float, dict[str, float]]]:
-    """Yield each fault and severity with the ratio of each law."""
+def _benches(board: Board, params: Any) -> Iterator[tuple[str, Document]]:
+    """Yield the bench at each noise, with the noise in nm as names of figures have it; without noises the bench."""
     if SUPERVISOR not in board.base:
         raise InputError("compares a supervised loop with others, and this bench has no supervisor", SUPERVISOR)
-    bare = {key: value for key, value in board.base.items() if key != SUPERVISOR}
+    if not params.noises_um:
+        yield "", board.base
+    for noise in params.noises_um:
+        yield label(1e3 * noise), with_values(board.base, {"sensor.noise_um": noise})
+
+
+def _ratios(board: Board, base: Document, params: Any) -> Iterator[tuple[str, float, dict[str, float]]]:
+    """Yield each fault and severity with the ratio of each law."""
+    bare = {key: value for key, value in base.items() if key != SUPERVISOR}
     pid = {"kind": "pid", "pole": params.pole, "feedforward": params.feedforward}
-    others = {"supervised": board.base, "pid": _law(bare, pid), "mrac": _law(bare, {"kind": "mrac"})}
+    others = {"supervised": base, "pid": _law(bare, pid), "mrac": _law(bare, {"kind": "mrac"})}
     for case, (fault, largest) in CASES.items():
         for share in SHARES:
             severity = round(largest * share, 10)

@@ -56,7 +56,7 @@ def path_of(entry: type[Block]) -> str:
         return "board"
     if entry.family == "board" and entry.per_axis:
         return entry.name.removeprefix("axis_")
-    if entry.family == "diagnose":
+    if entry.family == "diagnose" or entry.name == "weighted_filters":
         return "diagnosers.kalman"
     if entry.family == "identify":
         return "identifiers.own"
@@ -97,6 +97,8 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
         return {"units.fit.source": FIT, "identifiers.fit.kind": "fit"}
     if entry.name == "difference_states":
         return {"diagnosers.kalman.kind": "self_tuning", "diagnosers.slow.kind": "anchored"}
+    if entry.name == "weighted_filters":
+        return {"diagnosers": {"kalman": {"kind": "moving_bank"}, "slow": {"kind": "moving_bank", "every": 2}}}
     if entry.name == "weighted_parameters":  # it belongs to a diagnoser whose models have no states
         source = (ROOT / "docs/units/page.py").read_text("utf-8")
         return {"units.page.source": source, "diagnosers.page.kind": "page"}

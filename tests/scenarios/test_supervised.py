@@ -12,6 +12,7 @@ from core.errors import InputError
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
+from scenarios.studies import fault_tolerance
 
 SUPERVISED = ("ch5-fault-tolerant", "ch5-redesign", "ch5-wrong-verdict", "ch5-unknown-fault")
 INDIFFERENT = ("twins.holding.", "control.", "twins.pid.", "twins.mrac.", "twins.blended.")
@@ -66,3 +67,27 @@ def test_the_ratio_of_the_table_is_the_ratio_of_two_runs() -> None:
         error = result.signal("plant.displacement") - result.signal("model.displacement")
         errors.append(np.sqrt(np.mean(np.square(error[1000:]))))
     assert found == pytest.approx(errors[0] / errors[1], rel=1e-12)
+
+
+def test_the_table_at_several_noises_is_a_table_of_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each figure has the bits of the bench at that noise; the counts follow from the ratios."""
+    cases = {"stiffness": ("stiffness", 0.1), "damping": ("damping", 0.3)}
+    monkeypatch.setattr(fault_tolerance, "CASES", cases)
+    monkeypatch.setattr(fault_tolerance, "SHARES", (0.5, 1.0))
+    table = {**get("ch5-tolerance-table").document, "expect": []}
+
+    def figures(noise_um: float, **study: Any) -> dict[str, float]:
+        own = {"kind": "fault_tolerance", "runs": 1, "samples": 1600, **study}
+        scenario = Scenario.load({**table, "sensor": {"kind": "ideal", "noise_um": noise_um}, "study": own})
+        return {name: value for name, value in run(scenario).metrics.items() if name.startswith("tolerance.")}
+
+    both = figures(0.05, noises_um=[0.01, 0.2])
+    for noise_um, end in ((0.01, "10"), (0.2, "200")):
+        alone = figures(noise_um)
+        assert len(alone) == 12
+        for name, value in alone.items():
+            assert both.pop(f"{name}.{end}") == value
+        for law in ("pid", "mrac"):
+            pairs = [(alone[name.replace("supervised", law)], alone[name]) for name in alone if "supervised" in name]
+            assert both.pop(f"tolerance.{law}.as_well.{end}") == sum(own <= 1.1 * other for own, other in pairs)
+    assert not both

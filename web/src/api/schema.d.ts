@@ -10558,6 +10558,32 @@ export interface components {
             every?: number;
         };
         /**
+         * CoherenceStudy
+         * @description Unlike resonators that swing alike
+         */
+        CoherenceStudy: {
+            /**
+             * @description Unlike resonators that swing alike (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            kind: "coherence";
+            /**
+             * @description two resonators or more, by their faults
+             * @default []
+             */
+            resonators?: components["schemas"]["FaultyDevice"][];
+            /**
+             * @description the controllers
+             * @default []
+             */
+            laws?: components["schemas"]["Law"][];
+            /**
+             * @description length of a run
+             * @default 5000
+             */
+            samples?: number;
+        };
+        /**
          * Comparator
          * @description The best PID of a small family, chosen once for a scenario, on its device without faults.
          */
@@ -11353,6 +11379,11 @@ export interface components {
              * @default 1
              */
             feedforward?: number;
+            /**
+             * @description noises of the sensor; its own if there are none, µm
+             * @default []
+             */
+            noises_um?: number[];
         };
         /**
          * FaultyDevice
@@ -15470,7 +15501,7 @@ export interface components {
             estimation?: boolean;
         };
         /** Study */
-        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FaultToleranceStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["LawsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
+        Study: components["schemas"]["BeamWidthStudy"] | components["schemas"]["CoherenceStudy"] | components["schemas"]["DetectorsStudy"] | components["schemas"]["EstimatesStudy"] | components["schemas"]["FaultToleranceStudy"] | components["schemas"]["FlopsStudy"] | components["schemas"]["FreeDecayStudy"] | components["schemas"]["FrequencyResponseStudy"] | components["schemas"]["GainAdaptationStudy"] | components["schemas"]["JoinedRecordsStudy"] | components["schemas"]["KalmanGainsStudy"] | components["schemas"]["LawsStudy"] | components["schemas"]["MonteCarloStudy"] | components["schemas"]["OutputsStudy"] | components["schemas"]["PersistencyStudy"] | components["schemas"]["PositiveRealStudy"] | components["schemas"]["PrintedTableStudy"] | components["schemas"]["ProcessSpreadStudy"] | components["schemas"]["SensingStudy"] | components["schemas"]["SweptSineStudy"];
         /**
          * StvscController
          * @description Self-tuning VSC: Self-tuning variable structure control, `u=u_{eq}+\rho M\,\mathrm{sat}(s/\Phi)`.
@@ -16298,6 +16329,7 @@ export type BoardParams = components['schemas']['BoardParams'];
 export type Campaign = components['schemas']['Campaign'];
 export type CapacitiveSensor = components['schemas']['CapacitiveSensor'];
 export type ChirpReference = components['schemas']['ChirpReference'];
+export type CoherenceStudy = components['schemas']['CoherenceStudy'];
 export type Comparator = components['schemas']['Comparator'];
 export type ConsistencyDiagnoser = components['schemas']['ConsistencyDiagnoser'];
 export type ConstantRate = components['schemas']['ConstantRate'];

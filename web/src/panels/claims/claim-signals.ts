@@ -8,9 +8,11 @@ const PARTNERS: Partial<Record<string, string>> = {
 export const partnersOf = (signals: readonly string[]): string[] =>
   signals.flatMap((name) => PARTNERS[name] ?? []).filter((name) => !signals.includes(name));
 
-/** A weighted parameter, or the weighted displacement beside the true one. */
+/** A weighted parameter, or the weighted displacement or rate beside the true one. */
 function weightedBeside(name: string, metric: string): string[] {
-  const part = /rms_error_(mass|stiffness|damping)_pct$/.exec(metric)?.[1];
+  const part = /rms_error_(mass|stiffness|damping|second_stiffness)_pct$/.exec(metric)?.[1];
+  const port = /rms_error_(x|y|rate)_(?:um|dps)$/.exec(metric)?.[1];
+  if (port) return [`${name}.weighted.${port}`, port === "rate" ? "rate.rate" : `plant.${port}`];
   return part ? [`${name}.weighted.${part}`] : [`${name}.weighted.displacement`, "plant.displacement"];
 }
 

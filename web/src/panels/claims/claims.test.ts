@@ -122,6 +122,9 @@ it("knows what belongs beside a signal, and what a metric is about", () => {
   const more = [...weighted, ...known];
   expect(signalsOf("estimation.kalman.rms_error_um", more)).toEqual([weighted[0], "plant.displacement"]);
   expect(signalsOf("estimation.kalman.rms_error_mass_pct", more)).toEqual([weighted[1]]);
+  const axes = ["bank.weighted.rate", "rate.rate", "bank.weighted.x", "plant.x", ...known];
+  expect(signalsOf("estimation.bank.rms_error_rate_dps", axes)).toEqual(axes.slice(0, 2));
+  expect(signalsOf("estimation.bank.rms_error_x_um", axes)).toEqual(axes.slice(2, 4));
   expect(signalsOf("control.amplitude_um", known)).toEqual(["plant.displacement", "model.displacement"]);
 });
 

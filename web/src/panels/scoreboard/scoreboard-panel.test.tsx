@@ -85,6 +85,52 @@ it("shows state and parameters as the probabilities weigh them, with standard de
   ]);
 });
 
+it("shows motion, rate and parameters of a device with two axes", async () => {
+  const values: Record<string, [string, number]> = {
+    x: ["um", 0.5],
+    x_std: ["um", 1e-6],
+    y: ["um", 0.01],
+    y_std: ["um", 2e-6],
+    rate: ["deg/s", 300],
+    rate_std: ["deg/s", 1.5],
+    mass: ["1", 1],
+    stiffness: ["1", 1],
+    damping: ["1", 2],
+    second_stiffness: ["1", 1.01],
+    quadrature: ["deg/s", 500],
+  };
+  const place = { block: "kalman.weighted", kind: "tap" as const, meaning: "" };
+  const own = Object.entries(values).map(([port, [unit]], index) => ({
+    name: `kalman.weighted.${port}`,
+    unit,
+    index: index + 1000,
+    ...place,
+  }));
+  const board = connect({ ...bench, signals: [...bench.signals.filter(({ name }) => !name.includes(".weighted.")), ...own] });
+  board.status(status);
+  mount(<ScoreboardPanel />);
+  board.frame(
+    Object.fromEntries(Object.entries(values).map(([port, [, value]]) => [`kalman.weighted.${port}`, () => value])),
+    { head: 400 },
+  );
+  await drawOnce();
+  const table = screen.getByRole("table", { name: /^Models weighted by their probabilities/ });
+  expect(within(table).getAllByRole("columnheader").map((head) => head.textContent)).toEqual([
+    ...["Diagnoser", "x", "y", "Rate", "Mass", "Stiffness", "Damping", "Stiffness of y", "Quadrature"],
+  ]);
+  const shown = within(within(table).getByRole("row", { name: /^kalman / })).getAllByRole("cell");
+  expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
+    "500 nm± 1.00 pm",
+    "10.0 nm± 2.00 pm",
+    "300 deg/s± 1.50 deg/s",
+    "× 1.000",
+    "× 1.000",
+    "× 2.000",
+    "× 1.010",
+    "500 deg/s",
+  ]);
+});
+
 it("has no weighted estimates on a bench that does not show them", () => {
   const board = connect({ ...bench, signals: bench.signals.filter(({ name }) => !name.includes(".weighted.")) });
   board.status(status);

@@ -1,9 +1,12 @@
 import { diagnoserWords } from "../../bench/hypothesis-words";
 import { useBench } from "../../stream/bench-store";
 import { TableHead } from "../../ui/table-head";
-import { PARTS, sayRatio, useWeighted } from "../lanes/weighted-estimate";
+import { AXES_PARTS, AXES_STATE, PARTS, STATE, sayRatio, useWeighted } from "../lanes/weighted-estimate";
 import { useLiveValues } from "../schematic/use-live-values";
 import styles from "./scoreboard.module.css";
+
+const WORDS: Record<string, string> = { second_stiffness: "Stiffness of y", x: "x", y: "y" };
+const said = (port: string) => WORDS[port] ?? port.charAt(0).toUpperCase() + port.slice(1);
 
 /** State and parameters of the device as each diagnoser weighs its models. */
 export function WeightedTable({ ids }: { ids: readonly string[] }) {
@@ -12,15 +15,18 @@ export function WeightedTable({ ids }: { ids: readonly string[] }) {
   const live = useLiveValues(shown, sayRatio);
   const weighed = ids.filter((id) => has(id, "mass"));
   if (weighed.length === 0) return null;
+  const onAxes = weighed.some((id) => has(id, "rate"));
+  const states: readonly string[] = onAxes ? AXES_STATE : STATE;
+  const parts: readonly string[] = onAxes ? [...PARTS, ...AXES_PARTS] : PARTS;
   return (
     <table className={styles.table}>
       <caption>Models weighted by their probabilities, and parameters over nominal</caption>
-      <TableHead names={["Diagnoser", "Displacement", "Velocity", "Mass", "Stiffness", "Damping"]} />
+      <TableHead names={["Diagnoser", ...[...states, ...parts].map(said)]} />
       <tbody>
         {weighed.map((id) => (
           <tr key={id}>
             <th scope="row">{diagnoserWords(id, diagnosers)}</th>
-            {["displacement", "velocity"].map((port) => (
+            {states.map((port) => (
               <td key={port}>
                 {has(id, port) ? (
                   <>
@@ -34,7 +40,7 @@ export function WeightedTable({ ids }: { ids: readonly string[] }) {
                 )}
               </td>
             ))}
-            {PARTS.map((part) => (
+            {parts.map((part) => (
               <td key={part} ref={live(`${id}.weighted.${part}`)} />
             ))}
           </tr>
