@@ -113,6 +113,22 @@ it("marks the drive and the sensor whose stages of the board act, and says how",
   expect(box(/^Sensor .*, behind a filter of 20 kHz: show/)).toHaveTextContent("filter");
 });
 
+it("draws the way of a supervisor to the controller it changes, and none of one that stops the board", async () => {
+  const supervised = (kind: string) => ({ ...bench, parameters: { ...bench.parameters, supervisor: { kind } } });
+  const { board } = await mountPanel(supervised("retuning"));
+  const words = "The supervisor changes the controller by what the diagnosis finds";
+  expect(within(loop()).getByText(words, { selector: "title" }).parentElement).toHaveTextContent(/acts$/);
+  board.status({ parameters: supervised("shutdown").parameters });
+  expect(within(loop()).queryByText(words)).not.toBeInTheDocument();
+});
+
+it("cuts a verdict that is longer than its box", async () => {
+  const named = { ...bench.diagnosers.kalman, names: ["a damping that nothing explains"], factors: [{}] };
+  const { board } = await mountPanel({ ...bench, diagnosers: { kalman: named } });
+  board.status({ scores: { kalman: { ...status.scores.kalman, winner: 0 } } });
+  expect(within(loop()).getByText("a damping that…")).toBeInTheDocument();
+});
+
 it("marks the stages of a gyroscope at both forces and both pick-offs", async () => {
   const { bench } = gyroscope;
   await mountPanel({ ...bench, parameters: { ...bench.parameters, board: { delay_fraction: 0.5, jitter_us: 0.1 } } });
