@@ -76,9 +76,9 @@ const SELF_TUNING: Record<string, { figure: string; estimator: string } | undefi
 
 const ACTS: Wire = {
   id: "acts",
-  d: "M90 90 V82 H140 V58",
+  d: "M90 90 V82 H132 V58",
   label: "acts",
-  at: [142, 70],
+  at: [139, 70],
   acts: "The supervisor changes the controller by what the diagnosis finds",
 };
 
@@ -88,9 +88,7 @@ const OPTICAL_TITLES: Partial<Record<LoopBox["id"], string>> = { plant: "Device,
 /** Return the drawing of the loop of a bench. An identifier of the bench takes the place of the additions of a figure. */
 export function structureOf(parts: Parts): Structure {
   const structure = withoutSupervisor(parts);
-  return parts.isSupervised && parts.hasDiagnoser
-    ? { ...structure, wires: [...structure.wires, ACTS] }
-    : structure;
+  return parts.isSupervised && parts.hasDiagnoser ? { ...structure, wires: [...structure.wires, ACTS] } : structure;
 }
 
 function withoutSupervisor(parts: Parts): Structure {
