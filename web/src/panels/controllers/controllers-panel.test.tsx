@@ -59,6 +59,15 @@ it("shows what each controller says now, with its unit", async () => {
   expect(radio("pid").closest("[data-active]")).toHaveTextContent(/−250\smV$/);
 });
 
+it.each(["lqg", "adrc", "h_infinity", "sliding_observer"])("offers %s with its voltage of now", async (name) => {
+  const { board, user } = await mountPanel();
+  board.frame({ [`${name}.voltage`]: () => 4.5 }, { head: 400 });
+  await drawOnce();
+  expect(radio(name).closest("[data-active]")).toHaveTextContent(/4\.50?\sV$/);
+  await user.click(radio(name));
+  expect(board.commands).toEqual([{ switch: name, cold: false }]);
+});
+
 it("shows the parameters of the controller that drives on its card", async () => {
   const { user } = await mountPanel();
   await user.click(screen.getByRole("button", { name: "Parameters" }));

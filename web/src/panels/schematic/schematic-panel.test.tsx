@@ -185,6 +185,50 @@ it("draws a bank from inside, its probabilities in percent", async () => {
   expect(screen.getByRole("region", { name: "Equations: Weights" })).toHaveTextContent("5.2.3.2.6");
 });
 
+it.each([
+  ["lqg", ["Kalman filter", "Law"], "estimate"],
+  ["adrc", ["Extended state observer", "Law"], "disturbance"],
+  ["h_infinity", ["Controller", "Law"], "error"],
+  ["sliding_observer", ["Observer", "Law"], "velocity"],
+])("draws %s from inside, with its own estimate and its voltage of now", async (name, titles, own) => {
+  const { board, inside } = await mountPanel(driving(name));
+  const stages = await inside(`controllers.${name}`);
+  expect(stages.getAllByRole("button").map((one) => one.textContent)).toEqual(titles);
+  board.frame({ [`${name}.voltage`]: () => 2.5, [`${name}.${own}`]: () => -1.25 }, { head: 2000 });
+  await drawOnce();
+  expect(stages.getByText(/^2\.50\sV$/)).toBeInTheDocument();
+  expect(stages.getByText(/^−1\.25\s/)).toBeInTheDocument();
+});
+
+it("draws an extended Kalman filter from inside, as a diagnoser and as an identifier", async () => {
+  const stiffness = { ...bench.signals[0], name: "ekf.stiffness", unit: "N/m", block: "ekf" };
+  const estimate = { ...stiffness, name: "ekf.estimate.stiffness" };
+  const { board, inside, user } = await mountPanel({
+    ...bench,
+    diagnosers: { ekf: { ...bench.diagnosers.kalman, kind: "ekf" } },
+    signals: [...bench.signals, stiffness, estimate],
+    parameters: {
+      ...bench.parameters,
+      diagnosers: { ekf: { kind: "ekf" } },
+      identifiers: { ekf: { kind: "ekf" } },
+    },
+  });
+  const bank = await inside("diagnosers.ekf");
+  expect(bank.getAllByRole("button").map((one) => one.textContent)).toEqual([
+    "Extended Kalman filter",
+    "Distances",
+    "Weights",
+    "Test",
+    "Verdict",
+  ]);
+  board.frame({ "ekf.stiffness": () => 2.5, "ekf.estimate.stiffness": () => 2.25 }, { head: 2000 });
+  await drawOnce();
+  expect(bank.getByText(/^2\.50\sN\/m$/)).toBeInTheDocument();
+  await user.selectOptions(screen.getByRole("combobox", { name: "Drawing" }), "identifiers.ekf");
+  const identifier = await screen.findByRole("group", { name: /^Stages of/ });
+  expect(within(identifier).getByRole("button", { name: "Estimate" })).toBeInTheDocument();
+});
+
 it("draws a unit of one's own as one stage", async () => {
   const pid = catalog.blocks.find((b) => b.family === "control" && b.name === "pid");
   const [stage] = pid?.structure ?? [];
