@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from core.format import format_figure, format_spread, plain_scale, round_to
 
 NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json").read_text("utf-8"))
-"""Shared with the page: families that need not be said, words for parts of names, units by the ending of a name."""
+"""Shared with the page: families that need not be said, words for their numbers and for parts of names, units by the ending of a name."""
 
 
 class MetricScale(NamedTuple):
@@ -75,12 +75,14 @@ def _parts(metric: str) -> tuple[str, str]:
     pieces = metric.split(".")
     whose = [pieces[1]] if pieces[0] == "twins" and len(pieces) > 2 else []
     pieces = pieces[2:] if whose else pieces
+    number = "{}"
     if len(pieces) > 1 and pieces[0] in NAMES["families"]:
+        number = NAMES["numbered"].get(pieces[0], number)
         pieces = pieces[1:]
     unit, said = "", list[str]()
     for piece in pieces:
         if piece.isdigit() and said:  # the number of a step belongs to the counted noun
-            said[-1] += f" {piece}"
+            said[-1] += f" {number.format(piece)}"
             continue
         words, found = _without_unit(piece)
         unit = found or unit

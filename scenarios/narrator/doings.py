@@ -8,13 +8,22 @@ from typing import Any
 from core.board.document import SUPERVISOR
 from core.board.log import LogEntry
 from core.board.spec import Spec
-from core.errors import InputError
 from core.faults.fault import FaultParams
 from core.format import format_percent, format_short
 from core.loop.guard import BEYOND_TRAVEL, ON_THE_RAIL, REASONS
 from scenarios.narrator.samples import NarratorSignals, rms
 from scenarios.narrator.sentence import Kind, Sentence
-from scenarios.narrator.words import change, figure, length, listed, moment, uncapital
+from scenarios.narrator.words import (
+    act_words,
+    change,
+    figure,
+    length,
+    listed,
+    moment,
+    reason_words,
+    title_of,
+    uncapital,
+)
 
 TOLD = ("inject", "heal", "switch", "set", "tripped", "make_safe")
 """Kinds of entries with a sentence; of set parameters only a change of the driving controller."""
@@ -39,7 +48,7 @@ class Doings:
     """
 
     def __init__(self, spec: Spec) -> None:
-        self._library, self._dt_ms = spec.library, spec.dt_ms
+        self._library, self._dt_ms, self._diagnosers = spec.library, spec.dt_ms, spec.diagnosers
         guard: Any = spec.guard.params
         self._limits = {f"guard.{name}": getattr(guard, name) for name in ("travel_um", "rail_ms")}
 
@@ -47,7 +56,9 @@ class Doings:
         """Say an entry; nothing if it is of another kind."""
         command = entry.command or {}
         if entry.actor == SUPERVISOR and entry.kind in ("set", "switch"):
-            return self._said("switch", entry.tick, f"the supervisor acts: {entry.text}", [], {})
+            reason = reason_words(entry.text.rpartition(": ")[2], self._diagnosers)
+            act = f"the supervisor {act_words(command, self._library)}, because {reason}"
+            return self._said("switch", entry.tick, act, [], {})
         if entry.kind == "set":
             old, new = entry.old or {}, entry.new or {}
             self._limits = {path: new.get(path, value) for path, value in self._limits.items()}
@@ -69,7 +80,7 @@ class Doings:
         return Sentence(tick=tick, kind=kind, text=text, signals=signals, span=(tick, tick), numbers=numbers)
 
     def _switch(self, tick: int, old: Any, new: str, samples: NarratorSignals) -> Sentence:
-        came, went = self._title("control", new), self._title("control", old)
+        came, went = title_of(self._library, "control", new), title_of(self._library, "control", old)
         restarts = f"{came} starts anew"
         text = restarts if old == new or not old else f"{came} takes the drive over from {went}"
         numbers, signals = {}, []
@@ -83,7 +94,7 @@ class Doings:
 
     def _fault(self, entry: LogEntry, command: dict[str, Any], samples: NarratorSignals) -> Sentence:
         name, severity = command["fault"], float(command["severity"])
-        title, size = uncapital(self._title("faults", name)), self._severity(name, severity)
+        title, size = uncapital(title_of(self._library, "faults", name)), self._severity(name, severity)
         before = (entry.old or {}).get("severity")
         numbers = {"severity": severity} | ({} if before is None else {"severity_before": float(before)})
         begins = f"a fault begins: {title} {size}"
@@ -98,7 +109,7 @@ class Doings:
         if not names:  # all were to be healed, and none was there
             return None
         numbers, changed, signals = self._factors(entry.tick, names, samples)
-        titles = listed([uncapital(self._title("faults", name)) for name in names])
+        titles = listed([uncapital(title_of(self._library, "faults", name)) for name in names])
         healed = f"{titles} {'is' if len(names) == 1 else 'are'} healed"
         text = f"{healed}; {changed}" if changed else healed
         faults = {"faults": float(len(names))}
@@ -160,10 +171,3 @@ class Doings:
         """Return the changes by a fault, without their consequences."""
         block: Any = self._library.blocks("faults").get(name)
         return f"the {getattr(block, 'changes', 'device').partition(';')[0]}"
-
-    def _title(self, family: str, name: Any) -> str:
-        """Return the title of a block; its name where this version does not know it."""
-        try:
-            return self._library.block(family, str(name), "").title
-        except InputError:
-            return str(name)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
+from core.board.library import Library
 from core.board.spec import Section
 from core.diagnose.hypothesis import ModelList, NamedModel
+from core.errors import InputError
 from core.format import MINUS, format_short, format_si
 
 NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
 """Factors with an unclear name."""
+RATIO, TIMES = "_ratio", "×\u00a0"
+"""A value over that of the nominal device: the damping ratio of an oscillator is another quantity."""
 
 
 def moment(ms: float) -> str:
@@ -60,6 +65,43 @@ def diagnosis_words(diagnosers: Mapping[str, Section]) -> dict[str, str]:
         models = section.params.hypotheses if isinstance(section.params, ModelList) else []
         words |= {model.name: hypothesis_words(model) for model in models}
     return words
+
+
+def title_of(library: Library, family: str, name: Any) -> str:
+    """Return the title of a block; its name where this version does not know it."""
+    try:
+        return library.block(family, str(name), "").title
+    except InputError:
+        return str(name)
+
+
+def act_words(command: Mapping[str, Any], library: Library) -> str:
+    """Say an act of a supervisor: "sets LQG to mass × 1.05", "switches to PID"."""
+    if "switch" in command:
+        return f"switches to {title_of(library, 'control', command['switch'])}"
+    if "set" not in command:
+        return "sets safe outputs"
+    values: dict[str, list[str]] = {}
+    for path, value in command["set"].items():
+        place, _, name = path.rpartition(".")
+        times, shown = TIMES if name.endswith(RATIO) else "", str(value)
+        if isinstance(value, float):
+            shown = format_short(value, "", 4)
+        values.setdefault(place, []).append(f"{name.removesuffix(RATIO).replace('_', ' ')} {times}{shown}")
+    return f"sets {listed([f'{_place(place, library)} to {listed(said)}' for place, said in values.items()])}"
+
+
+def reason_words(reason: str, diagnosers: Mapping[str, Section]) -> str:
+    """Write the reason of an act with the hypotheses in it in words."""
+    for name, words in diagnosis_words(diagnosers).items():
+        reason = reason.replace(f"named {name} for", f"named {words} for")
+    return reason
+
+
+def _place(place: str, library: Library) -> str:
+    """Say where a value belongs: a controller by its title, anything else by its path."""
+    family, _, name = place.partition(".")
+    return title_of(library, "control", name) if family == "controllers" else place.replace("_", " ")
 
 
 def _factor(name: str, value: float) -> str:

@@ -15,6 +15,7 @@ from core.board.words import describe
 from core.cards import card
 from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
+from scenarios.narrator.words import act_words, reason_words
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
 from server.bench.status import (
@@ -110,7 +111,11 @@ def _supervisor(board: Board) -> SupervisorStatus:
         dead_ms=now("dead_ms"),
         acts=len(board.consequences),
         last_act=last
-        and SupervisorAct(tick=last.tick, text=describe(last.command, board.spec.library), reason=last.reason),
+        and SupervisorAct(
+            tick=last.tick,
+            text=act_words(last.command.document(), board.spec.library),
+            reason=reason_words(last.reason, board.spec.diagnosers),
+        ),
     )
 
 

@@ -98,7 +98,7 @@ class SupervisorAct(BaseModel):
     """An act of the supervisor."""
 
     tick: int
-    text: str = Field(description="What it did, in words")
+    text: str = Field(description="The act in words: sets LQG to mass × 1.05")
     reason: str
 
 

@@ -6,8 +6,11 @@ from typing import Any
 
 import pytest
 
+from core.board.library import PLAIN
 from core.board.live import value_at
 from core.errors import InputError
+from core.format import format_short
+from scenarios.narrator.words import act_words
 from scenarios.run import build, run
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
@@ -33,6 +36,10 @@ def do(bench: LiveBench, document: dict[str, Any]) -> Any:
     return bench.execute(parse(document), "test")
 
 
+def sentences(bench: LiveBench) -> list[str]:
+    return [sentence.text for sentence in bench.narration.told().sentences]
+
+
 def acts(bench: LiveBench) -> list[Any]:
     return [event for event in bench.events.after(0)[1] if event.actor == "supervisor"]
 
@@ -49,12 +56,38 @@ def test_the_log_and_the_status_say_what_it_did_and_why() -> None:
     told = bench.status.supervisor
     assert told is not None and (told.kind, told.verdict, told.acting, told.acts) == ("switching", "m+5", "m+5", 1)
     (event,) = acts(bench)
-    assert told.last_act is not None and event.text == f"{told.last_act.text}: {told.last_act.reason}"
+    assert event.text.startswith("switch to pid: kalman has named m+5 for ")
+    assert told.last_act is not None and told.last_act.text == "switches to PID"
+    assert told.last_act.reason.startswith(f"kalman has named mass +{format_short(5.0, '%', 3)} for ")
     assert event.tick == told.last_act.tick and event.command == {"switch": "pid"}
     assert bench.status.controller == "pid"
-    assert "The supervisor acts: switch to pid: kalman has named m+5" in str(bench.narration.told()).replace(
-        "the supervisor", "The supervisor"
-    )
+    assert f"the supervisor switches to PID, because {told.last_act.reason}." in " ".join(sentences(bench))
+
+
+def test_an_act_that_sets_values_is_told_by_the_title_of_the_controller() -> None:
+    bench = supervised("retuning")
+    advance(bench, 500)
+    do(bench, FAULT)
+    advance(bench, TICKS)
+    bench.refresh_status()
+    told, event = bench.status.supervisor, acts(bench)[-1]
+    ratio = format_short(event.command["set"]["controllers.lqg.mass_ratio"], "", 4)
+    assert told is not None and told.last_act is not None
+    assert told.last_act.text.startswith(f"sets LQG to mass ×\u00a0{ratio}")
+    assert f"the supervisor {told.last_act.text}, because the estimate of kalman has moved by" in " ".join(sentences(bench))
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ({"switch": "adrc"}, "switches to Active disturbance rejection (ADRC)"),
+        ({"set": {"controllers.lqg.mass_ratio": 1.05123, "sensor.kind": "ideal"}}, "sets LQG to mass ×\u00a01.051 and "),
+        ({"make_safe": "no hypothesis fits"}, "sets safe outputs"),
+        ({"switch": "of_their_own"}, "switches to of_their_own"),
+    ],
+)
+def test_an_act_in_words(command: dict[str, Any], said: str) -> None:
+    assert act_words(command, PLAIN).startswith(said)
 
 
 def test_a_live_run_is_the_run_of_its_document() -> None:

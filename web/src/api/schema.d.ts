@@ -8433,7 +8433,7 @@ export interface components {
             tick: number;
             /**
              * Text
-             * @description What it did, in words
+             * @description The act in words: sets LQG to mass × 1.05
              */
             text: string;
             /** Reason */

@@ -6,6 +6,7 @@ import { plainScale, roundTo } from "./unit-scale";
 
 /** Units by the ending that the names of fields have for them. */
 const UNITS: Partial<Record<string, string>> = names.units;
+const NUMBERED: Partial<Record<string, string>> = names.numbered;
 const WORDS: Partial<Record<string, string>> = names.words;
 
 /** How figures of one metric are shown beside each other. */
@@ -45,12 +46,16 @@ function partsOf(metric: string): { name: string; unit: string } {
     said.push(pieces[1]);
     pieces = pieces.slice(2);
   }
-  if (pieces.length > 1 && names.families.includes(pieces[0])) pieces = pieces.slice(1);
+  let number = "{}";
+  if (pieces.length > 1 && names.families.includes(pieces[0])) {
+    number = NUMBERED[pieces[0]] ?? number;
+    pieces = pieces.slice(1);
+  }
   const first = said.length;
   let unit = "";
   for (const piece of pieces) {
     // the number of a step belongs to the word before it
-    if (/^\d+$/.test(piece) && said.length > first) said[said.length - 1] += ` ${piece}`;
+    if (/^\d+$/.test(piece) && said.length > first) said[said.length - 1] += ` ${number.replace("{}", piece)}`;
     else {
       const found = withoutUnit(piece);
       unit = found.unit || unit;

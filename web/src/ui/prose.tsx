@@ -2,7 +2,8 @@ import katex from "katex";
 import { Fragment } from "react";
 import { keepUnits } from "./format";
 
-const MATH = /:math:`([^`]+)`|``([^`]+)``|`([^`]+)`/g;
+/** A formula with the sign after it, which else might begin a line of its own; a name in one of two ways. */
+const MATH = /:math:`([^`]+)`([.,;:])?|``([^`]+)``|`([^`]+)`/g;
 
 /** Text of the catalogue, with the mathematics and names in it set as such. */
 export function Prose({ text }: { text: string }) {
@@ -26,7 +27,9 @@ function proseParts(text: string): ProsePart[] {
   let at = 0;
   for (const match of text.matchAll(MATH)) {
     if (match.index > at) parts.push({ kind: "words", text: text.slice(at, match.index) });
-    parts.push(match[1] ? { kind: "math", text: match[1] } : { kind: "name", text: match[2] ?? match[3] });
+    const [, math, sign, name, short] = match;
+    const formula = sign ? `${math}\\text{${sign}}` : math;
+    parts.push(math ? { kind: "math", text: formula } : { kind: "name", text: name ?? short });
     at = match.index + match[0].length;
   }
   if (at < text.length) parts.push({ kind: "words", text: text.slice(at) });

@@ -12,16 +12,27 @@ import { ParameterList } from "./parameter-list";
 const GENERATORS = ["reference", "rate"];
 
 /** The parameters of the block with an id, if the bench has it. */
-export function BlockValues({ id, isTitled = false }: { id: string; isTitled?: boolean }) {
-  const { block } = useCatalog();
+export function BlockValues({ id }: { id: string }) {
   const instance = useInstances().find((one) => one.id === id);
-  const found = instance && block(instance.family, instance.name);
-  if (!instance || !found || (isTitled && found.parameters.length === 0)) return null;
+  return instance ? <Values instance={instance} /> : null;
+}
+
+/** The parameters of several blocks, each under its title, which may be changed together. */
+export function TitledValues({ ids }: { ids: readonly string[] }) {
+  const parameters = useBench((s) => s.bench?.parameters);
+  const drives = useMay("drive");
+  const { block } = useCatalog();
+  const list = useInstances();
+  const blocks = ids.flatMap((id) => {
+    const instance = list.find((one) => one.id === id);
+    const found = instance && block(instance.family, instance.name);
+    return found?.parameters.length ? [{ title: found.title, instance, parameters: found.parameters }] : [];
+  });
+  if (!parameters || blocks.length === 0) return null;
   return (
-    <>
-      {isTitled && <h2>{found.title}</h2>}
-      <Values instance={instance} />
-    </>
+    <fieldset disabled={!drives}>
+      <ParameterList blocks={blocks} document={parameters} />
+    </fieldset>
   );
 }
 
@@ -37,8 +48,7 @@ export function Values({ instance }: { instance: Instance }) {
       {GENERATORS.includes(instance.family) && <KindChoice instance={instance} />}
       <ParameterList
         key={`${instance.id} ${instance.name}`}
-        instance={instance}
-        parameters={found.parameters}
+        blocks={[{ instance, parameters: found.parameters }]}
         document={parameters}
       />
     </fieldset>

@@ -59,6 +59,15 @@ it("shows what each controller says now, with its unit", async () => {
   expect(radio("pid").closest("[data-active]")).toHaveTextContent(/−250\smV$/);
 });
 
+it.each(["lqg", "adrc", "h_infinity", "sliding_observer"])("offers %s with its voltage of now", async (name) => {
+  const { board, user } = await mountPanel();
+  board.frame({ [`${name}.voltage`]: () => 4.5 }, { head: 400 });
+  await drawOnce();
+  expect(radio(name).closest("[data-active]")).toHaveTextContent(/4\.50?\sV$/);
+  await user.click(radio(name));
+  expect(board.commands).toEqual([{ switch: name, cold: false }]);
+});
+
 it("shows the parameters of the controller that drives on its card", async () => {
   const { user } = await mountPanel();
   await user.click(screen.getByRole("button", { name: "Parameters" }));
@@ -115,7 +124,7 @@ it("shows what the supervisor has concluded, its last act and why", async () => 
   expect(panel.getByText("kalman has named healthy for 2.5 ms.")).toBeVisible();
   expect(panel.getByText("Nothing counts for another 400 µs.")).toBeVisible();
   expect(panel.getByRole("status")).toHaveTextContent("It has not acted.");
-  const last_act = { tick: 400, text: "switch to pid", reason: "kalman has named m+5 for 1 ms, weight 0.998" };
+  const last_act = { tick: 400, text: "switches to PID", reason: "kalman has named mass +5 % for 1 ms, weight 0.998" };
   const acted = { ...now, verdict: "none fits", acting: "m+5", dead_ms: 0, acts: 2, last_act };
   board.status({ supervisor: acted });
   expect(
@@ -123,8 +132,9 @@ it("shows what the supervisor has concluded, its last act and why", async () => 
   ).toBeVisible();
   expect(panel.queryByText(/Nothing counts/)).not.toBeInTheDocument();
   expect(panel.getByRole("status")).toHaveTextContent(
-    /^Last act, at .*: switch to pid, because kalman has named m\+5 for 1 ms, weight 0\.998\. 2 acts so far\.$/,
+    /^Last act, at .*: it switches to PID, because kalman has named mass \+5 % for 1 ms, weight 0\.998\. 2 acts so far\.$/,
   );
+  expect(screen.getAllByRole("group")[0]).toHaveAccessibleName("Supervisor"); // before the long list of laws
   await user.click(screen.getByRole("button", { name: "Parameters of the supervisor" }));
   expect(useView.getState().card).toBe("supervisor");
 });

@@ -46,6 +46,12 @@ export function ControllersPanel() {
   const outside = list.filter(({ id }) => id === "rate" || id === "reference" || driving.includes(id));
   return (
     <section className="view-page" aria-label="Choice">
+      {supervised && (
+        <Slot title="Supervisor">
+          <Parameters of="supervisor" label="Parameters of the supervisor" />
+          <Supervisor />
+        </Slot>
+      )}
       {Object.entries(slots).map(([slot, active]) => {
         const taken = overridden(slot, slots, block);
         return (
@@ -94,12 +100,6 @@ export function ControllersPanel() {
           </Slot>
         );
       })}
-      {supervised && (
-        <Slot title="Supervisor">
-          <Parameters of="supervisor" label="Parameters of the supervisor" />
-          <Supervisor />
-        </Slot>
-      )}
       {outside.map((instance) => (
         <Slot key={instance.id} title={instance.title}>
           <GeneratorForm instance={instance} />

@@ -18,8 +18,7 @@ export function GeneratorForm({ instance }: { instance: Instance }) {
       <KindChoice instance={instance} />
       <ParameterList
         key={instance.name}
-        instance={instance}
-        parameters={noiseLast(card.parameters)}
+        blocks={[{ instance, parameters: noiseLast(card.parameters) }]}
         document={document}
       />
     </>

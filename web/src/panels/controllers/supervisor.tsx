@@ -18,7 +18,7 @@ export function Supervisor() {
       {!!now.dead_ms && <p>Nothing counts for another {formatShort(now.dead_ms, "ms", 2)}.</p>}
       <p role="status">
         {last
-          ? `Last act, at ${formatMoment(last.tick * dt)}: ${last.text}, because ${last.reason}.`
+          ? `Last act, at ${formatMoment(last.tick * dt)}: it ${last.text}, because ${last.reason}.`
           : "It has not acted."}
         {now.acts > 1 && ` ${formatCount(now.acts, "act")} so far.`}
       </p>

@@ -116,6 +116,17 @@ it.each([
   expect(board.commands).toEqual([{ set: { [`board.${name}`]: Number(value) } }]);
 });
 
+it("changes values of several blocks of the board in one tick", async () => {
+  const { board, enter, user } = mountPanel(bench, <BoardView />);
+  await screen.findByRole("heading", { name: "Delay and amplifier" });
+  await user.click(screen.getByRole("checkbox", { name: "Collect changes, apply them in one tick" }));
+  await enter("Delay samples", "2");
+  await enter("Antialias, kHz", "20");
+  expect(board.commands).toEqual([]);
+  await user.click(screen.getByRole("button", { name: "Apply 2 in one tick" }));
+  expect(board.commands).toEqual([{ set: { "board.delay_samples": 2, "board.antialias_khz": 20 } }]);
+});
+
 it("has no slew in volts on a gyroscope", async () => {
   mountPanel(gyroscope.bench, <BoardView />);
   expect(await screen.findByRole("textbox", { name: /^Delay samples/ })).toBeVisible();

@@ -6,7 +6,7 @@ import { EmptyState } from "../../ui/empty-state";
 import { formatSi } from "../../ui/format";
 import { Knob } from "../../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT } from "../../ui/surroundings";
-import { BlockValues } from "../card/block-values";
+import { BlockValues, TitledValues } from "../card/block-values";
 import styles from "./device.module.css";
 import { PlantChoice } from "./plant-choice";
 import { SensorChoice } from "./sensor-choice";
@@ -95,9 +95,7 @@ export function BoardView() {
       <Box component="p" className="note" m="6px 0">
         {formatSi(rate, "kHz")}, one tick each {formatSi(dtMs, "ms")}.
       </Box>
-      {BOARD_BLOCKS.map((id) => (
-        <BlockValues key={id} id={id} isTitled />
-      ))}
+      <TitledValues ids={BOARD_BLOCKS} />
     </section>
   );
 }

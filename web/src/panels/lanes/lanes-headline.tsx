@@ -77,7 +77,17 @@ export function FitsNone({ least }: { least: number }) {
       w={280}
       label={`Even the hypothesis that fits best misses by ${times} times what its filter expects. Something acts that is not in the list, or the assumed noise is too small.`}
     >
-      <Box component="b" ml={8} p="1px 6px" bdrs={3} bg="var(--alarm)" c="var(--panel)" fz="xs">
+      <Box
+        component="b"
+        display="inline-block"
+        ml={8}
+        px={6}
+        lh={1.3}
+        bdrs={3}
+        bg="var(--alarm)"
+        c="var(--panel)"
+        fz="xs"
+      >
         fits none
       </Box>
     </Tooltip>

@@ -33,8 +33,9 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
       <ArrowHead />
       {wires.map((wire) => (
         <g key={wire.id}>
-          <path d={wire.d} className={styles.wire} markerEnd="url(#arrow)" />
-          <text x={wire.at[0]} y={wire.at[1]} className={styles.wireName}>
+          {wire.acts && <title>{wire.acts}</title>}
+          <path d={wire.d} className={styles.wire} data-acts={wire.acts !== undefined} markerEnd="url(#arrow)" />
+          <text x={wire.at[0]} y={wire.at[1]} className={styles.wireName} data-acts={wire.acts !== undefined}>
             {wire.label}
           </text>
         </g>
@@ -83,17 +84,19 @@ export function LoopDrawing({ label, boxes, wires, shown, say, faults }: LoopDra
           x={box.x + BOX.width - 6}
           y={box.y + 49}
           textAnchor="end"
-          className={styles.value}
+          className={`${styles.value} ${box.says ? styles.verdict : ""}`}
           ref={box.id in shown ? live(box.id) : undefined}
         >
-          {box.says ?? ""}
+          {cut(box.says ?? "", MOST_SAID)}
         </text>
       ))}
     </svg>
   );
 }
 
-const shorten = (title: string) => {
-  const text = title.replace(/\s*\(.*\)$/, "");
-  return text.length > 14 ? `${text.slice(0, 13).trimEnd()}…` : text;
-};
+/** Letters of a verdict with room in a box. */
+const MOST_SAID = 15;
+
+const cut = (text: string, most: number) => (text.length > most ? `${text.slice(0, most - 1).trimEnd()}…` : text);
+
+const shorten = (title: string) => cut(title.replace(/\s*\(.*\)$/, ""), 14);

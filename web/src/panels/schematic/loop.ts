@@ -79,6 +79,8 @@ export interface Wire {
   d: string;
   label: string;
   at: [number, number];
+  /** What it is, for a path that carries no signal: acts of the supervisor. */
+  acts?: string;
 }
 
 /** Letters are drawn at least at 0.88 of their size: below that the drawing scrolls. */

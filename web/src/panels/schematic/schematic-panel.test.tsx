@@ -113,6 +113,22 @@ it("marks the drive and the sensor whose stages of the board act, and says how",
   expect(box(/^Sensor .*, behind a filter of 20 kHz: show/)).toHaveTextContent("filter");
 });
 
+it("draws the way of a supervisor to the controller it changes, and none of one that stops the board", async () => {
+  const supervised = (kind: string) => ({ ...bench, parameters: { ...bench.parameters, supervisor: { kind } } });
+  const { board } = await mountPanel(supervised("retuning"));
+  const words = "The supervisor changes the controller by what the diagnosis finds";
+  expect(within(loop()).getByText(words, { selector: "title" }).parentElement).toHaveTextContent(/acts$/);
+  board.status({ parameters: supervised("shutdown").parameters });
+  expect(within(loop()).queryByText(words)).not.toBeInTheDocument();
+});
+
+it("cuts a verdict that is longer than its box", async () => {
+  const named = { ...bench.diagnosers.kalman, names: ["a damping that nothing explains"], factors: [{}] };
+  const { board } = await mountPanel({ ...bench, diagnosers: { kalman: named } });
+  board.status({ scores: { kalman: { ...status.scores.kalman, winner: 0 } } });
+  expect(within(loop()).getByText("a damping that…")).toBeInTheDocument();
+});
+
 it("marks the stages of a gyroscope at both forces and both pick-offs", async () => {
   const { bench } = gyroscope;
   await mountPanel({ ...bench, parameters: { ...bench.parameters, board: { delay_fraction: 0.5, jitter_us: 0.1 } } });
@@ -167,6 +183,50 @@ it("draws a bank from inside, its probabilities in percent", async () => {
   expect(stages.getAllByText("m+10", { ignore: "title" }).length).toBeGreaterThan(0);
   await user.click(stages.getByRole("button", { name: "Weights" }));
   expect(screen.getByRole("region", { name: "Equations: Weights" })).toHaveTextContent("5.2.3.2.6");
+});
+
+it.each([
+  ["lqg", ["Kalman filter", "Law"], "estimate"],
+  ["adrc", ["Extended state observer", "Law"], "disturbance"],
+  ["h_infinity", ["Controller", "Law"], "error"],
+  ["sliding_observer", ["Observer", "Law"], "velocity"],
+])("draws %s from inside, with its own estimate and its voltage of now", async (name, titles, own) => {
+  const { board, inside } = await mountPanel(driving(name));
+  const stages = await inside(`controllers.${name}`);
+  expect(stages.getAllByRole("button").map((one) => one.textContent)).toEqual(titles);
+  board.frame({ [`${name}.voltage`]: () => 2.5, [`${name}.${own}`]: () => -1.25 }, { head: 2000 });
+  await drawOnce();
+  expect(stages.getByText(/^2\.50\sV$/)).toBeInTheDocument();
+  expect(stages.getByText(/^−1\.25\s/)).toBeInTheDocument();
+});
+
+it("draws an extended Kalman filter from inside, as a diagnoser and as an identifier", async () => {
+  const stiffness = { ...bench.signals[0], name: "ekf.stiffness", unit: "N/m", block: "ekf" };
+  const estimate = { ...stiffness, name: "ekf.estimate.stiffness" };
+  const { board, inside, user } = await mountPanel({
+    ...bench,
+    diagnosers: { ekf: { ...bench.diagnosers.kalman, kind: "ekf" } },
+    signals: [...bench.signals, stiffness, estimate],
+    parameters: {
+      ...bench.parameters,
+      diagnosers: { ekf: { kind: "ekf" } },
+      identifiers: { ekf: { kind: "ekf" } },
+    },
+  });
+  const bank = await inside("diagnosers.ekf");
+  expect(bank.getAllByRole("button").map((one) => one.textContent)).toEqual([
+    "Extended Kalman filter",
+    "Distances",
+    "Weights",
+    "Test",
+    "Verdict",
+  ]);
+  board.frame({ "ekf.stiffness": () => 2.5, "ekf.estimate.stiffness": () => 2.25 }, { head: 2000 });
+  await drawOnce();
+  expect(bank.getByText(/^2\.50\sN\/m$/)).toBeInTheDocument();
+  await user.selectOptions(screen.getByRole("combobox", { name: "Drawing" }), "identifiers.ekf");
+  const identifier = await screen.findByRole("group", { name: /^Stages of/ });
+  expect(within(identifier).getByRole("button", { name: "Estimate" })).toBeInTheDocument();
 });
 
 it("draws a unit of one's own as one stage", async () => {

@@ -18,6 +18,9 @@ const PADDING = "6px 8px 4px";
 /** Families whose blocks are drawn from inside too. */
 const OPENED = ["control", "identify", "diagnose"];
 
+/** The supervisor that stops the board, and changes no controller. */
+const SHUTDOWN = "shutdown";
+
 /** The loop with its values now, or the inside of a controller, an identifier or a diagnoser. */
 export function SchematicPanel() {
   const axes = useBench((s) => s.bench?.axes);
@@ -102,6 +105,7 @@ function useStructure(): Structure {
       light: String(value("sensor", "light") ?? "through_wafer"),
       hasDiagnoser,
       hasIdentifier: list.some((i) => i.family === "identify"),
+      isSupervised: list.some((i) => i.family === "supervise" && i.name !== SHUTDOWN),
     });
   }, [parameters, controller, hasDiagnoser, list]);
 }

@@ -9,6 +9,7 @@ const PARTS: Parts = {
   light: "through_wafer",
   hasDiagnoser: false,
   hasIdentifier: false,
+  isSupervised: false,
 };
 const FIGURES: [figure: string | undefined, parts: Partial<Parts>][] = [
   [undefined, {}],
@@ -38,7 +39,8 @@ function ends(d: string): [number, number][] {
 
 describe.each(FIGURES)("drawn as figure %s", (figure, chosen) => {
   it.each([false, true])("has its boxes apart and its wires on their edges, with a diagnoser: %s", (hasDiagnoser) => {
-    const structure = structureOf({ ...PARTS, ...chosen, hasDiagnoser });
+    const structure = structureOf({ ...PARTS, ...chosen, hasDiagnoser, isSupervised: true });
+    expect(structure.wires.some(({ acts }) => acts)).toBe(hasDiagnoser);
     expect(structure.figure).toBe(figure);
     const boxes = [...structure.boxes, ...structure.extra];
     for (const a of boxes)

@@ -10,6 +10,8 @@ export interface Parts {
   light: string;
   hasDiagnoser: boolean;
   hasIdentifier: boolean;
+  /** Whether a supervisor changes the controller by what the diagnoser finds. */
+  isSupervised: boolean;
 }
 
 /** A box of some structures only: its contents, and the signal for its value. */
@@ -72,11 +74,24 @@ const SELF_TUNING: Record<string, { figure: string; estimator: string } | undefi
   stvsc: { figure: "2.2.3.1", estimator: "Gradient" },
 };
 
+const ACTS: Wire = {
+  id: "acts",
+  d: "M90 90 V82 H132 V58",
+  label: "acts",
+  at: [139, 70],
+  acts: "The supervisor changes the controller by what the diagnosis finds",
+};
+
 const PLAIN: Structure = { boxes: LOOP, extra: [], wires: WIRES, hasRoom: true };
 const OPTICAL_TITLES: Partial<Record<LoopBox["id"], string>> = { plant: "Device, grating", sensor: "Recovery unit" };
 
 /** Return the drawing of the loop of a bench. An identifier of the bench takes the place of the additions of a figure. */
 export function structureOf(parts: Parts): Structure {
+  const structure = withoutSupervisor(parts);
+  return parts.isSupervised && parts.hasDiagnoser ? { ...structure, wires: [...structure.wires, ACTS] } : structure;
+}
+
+function withoutSupervisor(parts: Parts): Structure {
   if (parts.hasIdentifier) return PLAIN;
   const light = LIGHTS[lightOf(parts) ?? ""];
   if (light) return optical(parts, light);
