@@ -22,8 +22,17 @@ USUAL = {"drive": "V", "displacement": "um", "time": "s"}
 """The unit of a column that names none."""
 NAMES: Mapping[str, Sequence[str]] = {
     "time": ("time", "t", "timestamp"),
-    "drive": ("drive", "drive.voltage", "voltage", "u", "vd", "vin", "input", "excitation"),
-    "displacement": ("displacement", "sensor.displacement", "y", "x", "position", "output", "response"),
+    "drive": ("drive", "drive.voltage", "drive_voltage", "voltage", "u", "vd", "vin", "input", "excitation"),
+    "displacement": (
+        "displacement",
+        "sensor.displacement",
+        "sensor_displacement",
+        "y",
+        "x",
+        "position",
+        "output",
+        "response",
+    ),
     "label": ("label", "truth", "fault", "state"),
 }
 """The names by which columns are found without a map."""
