@@ -169,6 +169,7 @@ def _effects(halves: Halves) -> Iterator[tuple[str, Numbers]]:
     fitted, dt_ms = halves.fitted, halves.dt_ms
     x = fitted.motion
     v = np.gradient(x, dt_ms)
+    yield "a drift of the offset", np.arange(len(x), dtype=np.float64)[:, None]
     yield "friction", fitted.pushed(np.sign(v), dt_ms)[:, None]
     yield "a nonlinear spring", fitted.pushed(x**3, dt_ms)[:, None]
     for part in (0.6, 0.75, 0.9):

@@ -9,6 +9,7 @@ import typer
 
 from core.errors import InputError
 from core.format import format_short
+from scenarios.records.examples import example
 from server.cli.replay import BenchOption, FileArgument, MapOption, PairingOption, RateOption, read_file
 from server.cli.terminal import JsonOption, load, plainly, say, say_json
 from server.cli.units import UnitOption
@@ -41,7 +42,8 @@ def diagnose_file(
     from scenarios.records.diagnosis import as_document, diagnose  # scipy: most commands do without it
 
     read = read_file(file, named, rate_khz, pairing)
-    first, end = _stretch(healthy, read.record.samples)
+    known = None if file.exists() else example(str(file))
+    first, end = (0, known.healthy) if known and healthy is None else _stretch(healthy, read.record.samples)
     found = diagnose(read.record, load(scenario, units), first, end)
     if html is not None:
         _write_report(html, found, read, file)
