@@ -161,7 +161,7 @@ class Result:
         return figure
 
     def save(self, path: str | Path) -> Path:
-        """Write the traces to a file; its ending says the format: parquet, csv, npz, mat, or nc for netCDF.
+        """Write the traces to a file; its ending says the format: parquet, csv, npz, mat, mcap, or nc for netCDF.
 
         Raises
         ------

@@ -12,6 +12,7 @@ from core.board.spec import Section, Spec
 from core.device.transfer_function import slowest_pole
 from core.errors import InputError, unknown
 from core.loop.model import Model
+from core.registry import blocks
 
 MOST_GROWTH = 100.0
 """Largest exponent of growth within a sample: the cube of the growth is still a number."""
@@ -24,6 +25,10 @@ def misfit(block: type[Block], plant: type[Block]) -> str:
         return f"is for {' and '.join(block.plants)} only; the plant is {plant.name}"
     if block.name not in (only := plant.takes.get(block.family, (block.name,))):
         return f"cannot act on a {plant.name}, which takes {', '.join(only) or f'no {block.family}'}"
+    for port in block.inputs:
+        sensor = port.source.split(".")[0]
+        if sensor in blocks("sense") and sensor not in plant.takes.get("sense", (sensor,)):
+            return f"reads {sensor}, and a {plant.name} has only {', '.join(plant.takes['sense'])}"
     if block.fits(axes):
         return ""
     moves = f"{plant.name} moves along {', '.join(axes)}" if axes else f"{plant.name} has one displacement"

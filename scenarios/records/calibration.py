@@ -51,6 +51,8 @@ class Calibration:
         Of the measured displacement; of the displacement behind the voltage.
     noise_um, quantum_um : float
         Standard deviation of a sample with its rounding; step of the converter, 0 where none is seen.
+    first, samples : int
+        The stretch: its first sample, and how many.
     checks : list of Check
         Each possible reason against the model.
     refusal : str
@@ -64,6 +66,7 @@ class Calibration:
     delay_samples: FittedNumber
     noise_um: float
     quantum_um: float
+    first: int
     samples: int
     checks: list[Check] = field(default_factory=list)
     refusal: str = ""
@@ -98,6 +101,7 @@ def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: 
         **estimates,
         noise_um=found.noise,
         quantum_um=halves.quantum,
+        first=first,
         samples=end - first,
         checks=checks,
         refusal=refusal,

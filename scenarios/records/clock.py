@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.errors import InputError
+from core.errors import InputError, one_line, short
 from scenarios.records.columns import Columns, Numbers
 
 NEAR = 0.05
@@ -36,17 +36,23 @@ def grid(columns: Columns, name: str, time_ms: Numbers) -> Grid:
     InputError
         Naming the row of a time that is no number or does not rise, or when too many samples are lost.
     """
-    wrong = np.flatnonzero(~np.isfinite(time_ms))
+    said, wrong = one_line(short(name)), np.flatnonzero(~np.isfinite(time_ms))
     if len(wrong):
-        raise InputError(f"row {columns.row(int(wrong[0]))}: {name} is no finite number", "record")
+        raise InputError(f"row {columns.row(int(wrong[0]))}, column {said}: a time must be a finite number", "record")
     between = np.diff(time_ms)
     back = np.flatnonzero(between <= 0.0)
     if len(back):
         row, before, after = columns.row(int(back[0]) + 1), time_ms[back[0]], time_ms[back[0] + 1]
-        raise InputError(f"row {row}: {name} does not rise: {after:.9g} ms after {before:.9g} ms", "record")
+        raise InputError(f"row {row}, column {said} does not rise: {after:.9g} ms after {before:.9g} ms", "record")
     if len(between) == 0:
         raise InputError("has 1 sample; 2 are the least", "record")
     usual = float(np.median(between))
+    if not 1e-300 < usual < 1e300:
+        raise InputError(f"column {said} rises by {usual:.3g} ms from row to row", "record")
+    if (time_ms[-1] - time_ms[0]) / usual > 2.0 * len(time_ms) / MOST_LOST:
+        raise InputError(
+            f"has {len(time_ms)} rows for a time of {time_ms[-1] - time_ms[0]:.3g} ms; most are lost", "record"
+        )
     places = np.concatenate(([0], np.cumsum(np.maximum(np.rint(between / usual), 1.0)))).astype(np.int64)
     step = (time_ms[-1] - time_ms[0]) / places[-1]
     rate = float(f"{1.0 / step:.9g}")

@@ -10,8 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError, one_line, short, unknown
+from core.measured_record import MOST_SAMPLES
 
 Numbers = NDArray[np.float64]
+
+MOST_COLUMNS = 1000
+MOST_NUMBERS = 4 * MOST_SAMPLES
+"""Numbers of all columns together, 640 MB."""
 
 VOLTS = {"v": 1.0, "mv": 1e-3, "kv": 1e3}
 MICROMETRES = {"m": 1e6, "mm": 1e3, "um": 1.0, "nm": 1e-3, "pm": 1e-6}
@@ -22,8 +27,17 @@ USUAL = {"drive": "V", "displacement": "um", "time": "s"}
 """The unit of a column that names none."""
 NAMES: Mapping[str, Sequence[str]] = {
     "time": ("time", "t", "timestamp"),
-    "drive": ("drive", "drive.voltage", "voltage", "u", "vd", "vin", "input", "excitation"),
-    "displacement": ("displacement", "sensor.displacement", "y", "x", "position", "output", "response"),
+    "drive": ("drive", "drive.voltage", "drive_voltage", "voltage", "u", "vd", "vin", "input", "excitation"),
+    "displacement": (
+        "displacement",
+        "sensor.displacement",
+        "sensor_displacement",
+        "y",
+        "x",
+        "position",
+        "output",
+        "response",
+    ),
     "label": ("label", "truth", "fault", "state"),
 }
 """The names by which columns are found without a map."""
@@ -34,23 +48,58 @@ _BEHIND = re.compile(r"^(.+)_([A-Za-zµμ]{1,2})$")
 
 @dataclass
 class Columns:
-    """Columns of a file as they are; ``first_row`` is the line of the first sample, for refusals."""
+    """Columns of a file as they are.
+
+    Parameters
+    ----------
+    names : list of str
+        All of them.
+    numbers, words : dict
+        The columns of numbers, and the columns that are words.
+    units : dict
+        The units that the file names beside the columns.
+    first_row : int
+        The line of the first sample, for refusals.
+    rows : array of int, optional
+        The line of each sample, where they do not follow each other.
+    decimal : str
+        The decimal sign of words.
+    """
 
     names: list[str]
     numbers: dict[str, Numbers] = field(repr=False)
     words: dict[str, list[str]] = field(default_factory=dict, repr=False)
     units: dict[str, str] = field(default_factory=dict)
     first_row: int = 1
+    rows: NDArray[np.int64] | None = field(default=None, repr=False)
+    decimal: str = "."
 
     def __post_init__(self) -> None:
         """Refuse two columns of one name."""
+        refuse_large(len(self.names), 0)
         twice = [name for i, name in enumerate(self.names) if name in self.names[:i]]
         if twice:
-            raise InputError(f"has two columns {short(twice[0])}", "record")
+            raise InputError(f"has two columns {one_line(short(twice[0]))}", "record")
 
     def row(self, i: int) -> int:
         """Return the row of a sample, as an editor counts them."""
-        return self.first_row + i
+        return self.first_row + i if self.rows is None else int(self.rows[i])
+
+
+def refuse_large(columns: int, samples: int) -> None:
+    """Refuse a table by the size that its file announces, before any of it is read.
+
+    Raises
+    ------
+    InputError
+        For too many columns, rows, or numbers.
+    """
+    if columns > MOST_COLUMNS:
+        raise InputError(f"has {columns} columns; at most {MOST_COLUMNS}", "record")
+    if samples > MOST_SAMPLES:
+        raise InputError(f"has {samples} rows; at most {MOST_SAMPLES}", "record")
+    if columns * samples > MOST_NUMBERS:
+        raise InputError(f"has {columns} columns of {samples} rows; at most {MOST_NUMBERS} numbers", "record")
 
 
 def split_unit(name: str) -> tuple[str, str]:
@@ -106,7 +155,6 @@ def factor(columns: Columns, part: str, name: str) -> float:
     unit = plain_unit(columns.units.get(name, "")) or split_unit(name)[1] or USUAL[part].lower()
     if unit not in UNITS[part]:
         allowed = ", ".join(UNITS[part])
-        raise InputError(
-            f"column {short(name)} is the {part} and has the unit {short(unit)}; allowed: {allowed}", "record"
-        )
+        said, told = one_line(short(name)), one_line(short(unit))
+        raise InputError(f"column {said} is the {part} and has the unit {told}; allowed: {allowed}", "record")
     return UNITS[part][unit]

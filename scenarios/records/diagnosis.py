@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from core.board.board import Board
 from core.board.instances import scored
 from core.board.rows import Rows
 from core.diagnose.hypothesis import ModelList, names_of
+from core.format import format_percent
 from core.measured_record import MeasuredRecord
 from core.signals import Signal
 from scenarios.measure.blocks import loaded, stretches
@@ -27,6 +28,10 @@ UNEXPLAINED = "unexplained"
 SURE = 0.9
 """Probability from which a verdict counts."""
 UNSURE = "unsure"
+MOST_UNEXPLAINED = 0.2
+"""Share of unexplained samples from which a record counts as unexplained."""
+Outcome = Literal["no fault", "fault", "unexplained", "refused"]
+"""What a diagnosis comes to; of several banks the worst counts."""
 SHORTEST = 20
 """Samples a verdict must last to be listed by itself."""
 
@@ -57,6 +62,37 @@ class RecordDiagnosis:
     def refusal(self) -> str:
         """Why there is no verdict; empty where there is."""
         return self.calibration.refusal
+
+    def faults(self, name: str) -> dict[str, float]:
+        """Return the faults that a bank names, each with its share of the record."""
+        none = {UNEXPLAINED, UNSURE, self.healthy[name]}
+        return {word: share for word, share in self.shares[name].items() if word not in none}
+
+    @property
+    def outcome(self) -> Outcome:
+        """What the diagnosis comes to."""
+        if self.refusal:
+            return "refused"
+        if any(shares.get(UNEXPLAINED, 0.0) >= MOST_UNEXPLAINED for shares in self.shares.values()):
+            return "unexplained"
+        return "fault" if any(self.faults(name) for name in self.shares) else "no fault"
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in a sentence."""
+        if self.refusal:
+            return f"Refused: {self.refusal}."
+        if self.outcome == "unexplained":
+            name, shares = max(self.shares.items(), key=lambda entry: entry[1].get(UNEXPLAINED, 0.0))
+            return f"Unexplained: no hypothesis of {name} fits {format_percent(shares[UNEXPLAINED])} of the record."
+        if self.outcome == "fault":
+            name = max(self.shares, key=lambda one: sum(self.faults(one).values()))
+            said = ", ".join(f"{word} in {format_percent(share)}" for word, share in self.faults(name).items())
+            return f"Fault: {name} names {said} of the record."
+        name = max(self.shares, key=lambda one: self.shares[one].get(UNSURE, 0.0))
+        unsure = self.shares[name].get(UNSURE, 0.0)
+        left = f"; {name} is unsure in {format_percent(unsure)}" if unsure else ""
+        return f"No fault: no bank names one{left}."
 
 
 def diagnose(
@@ -164,9 +200,12 @@ def as_document(found: RecordDiagnosis) -> dict[str, Any]:
             **{name: vars(getattr(calibration, name)) for name in estimates},
             "noise_um": calibration.noise_um,
             "quantum_um": calibration.quantum_um,
+            "first": calibration.first,
             "samples": calibration.samples,
             "checks": [vars(one) for one in calibration.checks],
         },
+        "outcome": found.outcome,
+        "sentence": found.sentence,
         "refusal": found.refusal,
         "verdicts": {name: [vars(one) for one in verdicts] for name, verdicts in found.verdicts.items()},
         "shares": found.shares,

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
@@ -55,9 +56,13 @@ class Fit:
         um.
     covariance : array, shape (5, 5)
         Of the logarithms of stiffness and damping, the delay, the logarithm of the gain, and the offset.
-    residual, motion : array
-        Measured minus fitted displacement, and the fitted displacement without offset, um.
-    seen : array, shape (samples, 7)
+    known : array of bool, shape (samples,)
+        Which samples were measured.
+    residual : array, shape (known samples,)
+        Measured minus fitted displacement, um.
+    motion : array, shape (samples,)
+        The fitted displacement without offset, at lost samples too, um.
+    seen : array, shape (known samples, 7)
         An orthonormal basis of the changes of the output that a change of the numbers makes.
     """
 
@@ -67,13 +72,15 @@ class Fit:
     gain: float
     offset: float
     covariance: Numbers = field(repr=False)
+    known: NDArray[np.bool_] = field(repr=False)
     residual: Numbers = field(repr=False)
     motion: Numbers = field(repr=False)
     seen: Numbers = field(repr=False)
 
     def unseen(self, shape: Numbers) -> Numbers:
-        """Return the part of columns that no number of the fit could take up."""
-        return shape - self.seen @ (self.seen.T @ shape)
+        """Return the part of columns, of all samples, that no number of the fit could take up, at known samples."""
+        there = shape[self.known]
+        return there - self.seen @ (self.seen.T @ there)
 
     def pushed(self, force: Numbers, dt_ms: float) -> Numbers:
         """Return the displacement under an acceleration that is held at every sample, from rest."""
@@ -170,6 +177,7 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
     numbers: Numbers = best.x
     left, weights, basis = solved(numbers)
     gain = float(weights[0])
+    whole = responses(math.exp(numbers[0]), math.exp(numbers[1]), numbers[2], drive, dt_ms)
     # the whole Jacobian: three numbers by differences with the linear ones held, and the linear ones by their columns
     jacobian = np.empty((len(y), 7))
     for i, step in enumerate((1e-6, 1e-5, 1e-5)):
@@ -190,8 +198,9 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
         gain=gain,
         offset=float(weights[3]),
         covariance=variance * inverse[:5, :5],
+        known=known,
         residual=left,
-        motion=y - left - weights[3],
+        motion=whole[:, :3] @ weights[:3],
         seen=np.linalg.qr(jacobian / scale)[0],
     )
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from scenarios.records.columns import Numbers
@@ -20,6 +21,8 @@ GROWN = 1.3
 ALIKE = 0.2
 """Largest correlation of a residual with an earlier one."""
 LAGS = 40
+FEWEST_PAIRS = 0.2
+"""Share of the pairs of samples at a lag that must be known for a correlation."""
 STEEP = 4.5
 """Standard errors beyond which a correlation is none of chance."""
 DRIFT = 0.1
@@ -62,7 +65,13 @@ class Halves:
         steps = np.diff(values)
         least = float(steps[steps > 1e-9 * np.ptp(values)].min())
         off = np.abs(steps / least - np.rint(steps / least))
-        return least if np.mean(off < 0.02) > 0.98 and len(values) < 0.9 * len(self.displacement) else 0.0
+        known = int(np.isfinite(self.displacement).sum())
+        return least if np.mean(off < 0.02) > 0.98 and len(values) < 0.9 * known else 0.0
+
+    @property
+    def later_known(self) -> NDArray[np.bool_]:
+        """Which samples of the second half were measured."""
+        return np.isfinite(self.displacement[len(self.displacement) // 2 :])
 
     @property
     def rounding(self) -> float:
@@ -82,7 +91,7 @@ def clipping(halves: Halves) -> Check:
     """Look for samples that stay at an extreme value."""
     y = halves.displacement[np.isfinite(halves.displacement)]
     at = [float(np.mean(y == extreme)) for extreme in (y.min(), y.max())]
-    runs = max(_longest(y == y.min()), _longest(y == y.max()))
+    runs = max(_longest(halves.displacement == extreme) for extreme in (y.min(), y.max()))
     still = max(at) > CLIPPED and runs > 3 and not _is_resting(halves)
     side = y.max() if at[1] >= at[0] else y.min()
     return Check(
@@ -116,20 +125,27 @@ def growth(halves: Halves) -> Check:
 
 def whiteness(halves: Halves) -> Check:
     """Look for correlation of the residuals, beyond chance and beyond the rounding of the converter."""
-    worst = max(_correlation(halves.fitted.residual), _correlation(halves.later))
-    limit = max(ALIKE, STEEP / math.sqrt(len(halves.later)))
+    fitted, later = halves.fitted, halves.later_known
+    worst = max(_correlation(fitted.residual, fitted.known), _correlation(halves.later, later))
+    limit = max(ALIKE, STEEP / math.sqrt(len(halves.later) * later.mean()))  # by how many pairs are known
     is_rounding = halves.fitted.noise <= 1.1 * halves.rounding
     ok = worst <= limit or is_rounding
     return Check("correlation", worst, limit, ok, "" if ok else _because(halves, "its errors follow each other"))
 
 
-def _correlation(residual: Numbers) -> float:
-    """Return the largest correlation of the residual with an earlier one."""
-    e = residual - residual.mean()
+def _correlation(residual: Numbers, known: NDArray[np.bool_]) -> float:
+    """Return the largest correlation of the residual with an earlier one, by the pairs of known samples."""
+    e = np.zeros(len(known))
+    e[known] = residual - residual.mean()
     power = float(e @ e)
     if power == 0.0:
         return 0.0
-    return max(abs(float(e[lag:] @ e[:-lag])) / power for lag in range(1, min(LAGS, len(e) // 4)))
+    found = [0.0]
+    for lag in range(1, min(LAGS, len(e) // 4)):
+        pairs = float(np.mean(known[lag:] & known[:-lag]))
+        if pairs >= FEWEST_PAIRS:
+            found.append(abs(float(e[lag:] @ e[:-lag])) / power * float(known.mean()) / pairs)
+    return max(found)
 
 
 def drift(halves: Halves) -> Check:
@@ -146,10 +162,14 @@ def _because(halves: Halves, found: str) -> str:
 
 
 def _effects(halves: Halves) -> Iterator[tuple[str, Numbers]]:
-    """Return effects beside mass, damper and spring, each with the residuals that it would leave, of any size."""
+    """Return effects beside mass, damper and spring, each with the residuals that it would leave, of any size.
+
+    They are computed at all samples, because the device moves on while samples are lost.
+    """
     fitted, dt_ms = halves.fitted, halves.dt_ms
     x = fitted.motion
     v = np.gradient(x, dt_ms)
+    yield "a drift of the offset", np.arange(len(x), dtype=np.float64)[:, None]
     yield "friction", fitted.pushed(np.sign(v), dt_ms)[:, None]
     yield "a nonlinear spring", fitted.pushed(x**3, dt_ms)[:, None]
     for part in (0.6, 0.75, 0.9):

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, one_line, short, unknown
 from core.measured_record import UNLABELLED, MeasuredRecord
-from scenarios.records.binary_table import mat_columns, netcdf_columns, parquet_columns
+from scenarios.records.binary_table import mat_columns, npz_columns, parquet_columns
 from scenarios.records.clock import Grid, displacements_at, grid, rows_at, said_lost
 from scenarios.records.columns import Columns, Numbers, assigned, factor
+from scenarios.records.hdf5_table import hdf5_columns, netcdf_columns
 from scenarios.records.text_table import mistake, text_columns
 
 READERS: Mapping[str, Callable[[bytes], Columns]] = {
@@ -24,11 +25,14 @@ READERS: Mapping[str, Callable[[bytes], Columns]] = {
     ".dat": text_columns,
     ".parquet": parquet_columns,
     ".mat": mat_columns,
+    ".npz": npz_columns,
     ".nc": netcdf_columns,
-    ".h5": netcdf_columns,
+    ".h5": hdf5_columns,
+    ".hdf5": hdf5_columns,
 }
 MOST_BYTES = 1 << 30
 MOST_LABELS = 100
+LONGEST_LABEL = 64
 Pairing = Literal["next", "last"]
 
 
@@ -74,8 +78,10 @@ def read_record(
         raise InputError(f"has {len(content)} bytes; at most {MOST_BYTES}", "record")
     columns = READERS[ending](content)
     place = assigned(columns, named or {})
+    _refuse_uneven(columns, place)
     drive, displacement = (_in_units(columns, part, place[part]) for part in ("drive", "displacement"))
     _refuse_lost(columns, place["drive"], drive)
+    _refuse_endless(columns, place["displacement"], displacement)
     notes, where, rows = list[str](), None, np.arange(len(drive))
     if "time" in place:
         time_ms = _in_units(columns, "time", place["time"])
@@ -111,6 +117,26 @@ def _refuse_lost(columns: Columns, name: str, drive: Numbers) -> None:
         raise InputError(f"row {row}, column {one_line(short(name))}: a voltage must be a finite number", "record")
 
 
+def _refuse_uneven(columns: Columns, place: Mapping[str, str]) -> None:
+    """Refuse vectors of different lengths."""
+    lengths = {name: len(columns.numbers.get(name, columns.words.get(name, ()))) for name in place.values()}
+    (first, usual), *others = lengths.items()
+    for name, length in others:
+        if length != usual:
+            texts = (
+                f"column {one_line(short(one))} has {count} rows" for one, count in ((first, usual), (name, length))
+            )
+            raise InputError(", ".join(texts), "record")
+
+
+def _refuse_endless(columns: Columns, name: str, displacement: Numbers) -> None:
+    """Refuse a displacement without end, which is no lost sample."""
+    wrong = np.flatnonzero(np.isinf(displacement))
+    if len(wrong):
+        row = columns.row(int(wrong[0]))
+        raise InputError(f"row {row}, column {one_line(short(name))}: a displacement must be finite", "record")
+
+
 def _rate(where: Grid | None, rate_khz: float | None) -> float:
     if where is None:
         if rate_khz is None:
@@ -134,6 +160,8 @@ def _labels(
         words = ["" if np.isnan(number) else f"{number:g}" for number in columns.numbers[name].tolist()]
     names = tuple(dict.fromkeys(word for word in words if word))
     if len(names) > MOST_LABELS:
-        raise InputError(f"column {short(name)} has {len(names)} labels; at most {MOST_LABELS}", "record")
+        raise InputError(f"column {one_line(short(name))} has {len(names)} labels; at most {MOST_LABELS}", "record")
+    if any(len(word) > LONGEST_LABEL for word in names):
+        raise InputError(f"column {one_line(short(name))} has a label of over {LONGEST_LABEL} characters", "record")
     index = {word: i for i, word in enumerate(names)} | {"": UNLABELLED}
     return np.array([index[word] for word in words], dtype=np.int64)[rows], names

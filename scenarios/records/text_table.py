@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.errors import InputError, one_line, short
 from scenarios.arrow import csv as arrow_csv
 from scenarios.arrow import pa
-from scenarios.records.columns import Columns
+from scenarios.records.columns import Columns, refuse_large
 
 SEPARATORS = (";", "\t", ",", "|", " ")
 """Tried in this order: a decimal comma is more likely than a separator within a field."""
@@ -23,7 +24,9 @@ LOOKED_AT = 50
 """Lines from which separator and decimal sign are found."""
 LOST = ("", "nan", "NaN", "NAN", "NA", "N/A", "null", "None", "-nan", "nan(ind)", "-nan(ind)")
 """Words for a sample that was not measured."""
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eEdD][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?([0-9]+[.,]?[0-9]*|[.,][0-9]+)([eEdD][+-]?[0-9]+)?")
+"""A number as it may be written; `_NUMERAL` as it is read."""
+_NUMERAL = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)([eEdD][+-]?[0-9]+)?|inf|infinity)", re.IGNORECASE)
 _ROW = re.compile(r"Row #(\d+)")
 _COLUMN = re.compile(r"column #(\d+)")
 _VALUE = re.compile(r"invalid value '(.*?)'")
@@ -53,8 +56,9 @@ def text_columns(content: bytes) -> Columns:
     form = _form(lines)
     if form.separator == " ":
         text = re.sub(r"(?m)^ +| +$", "", re.sub(r"[ \t]+", " ", text))
+    refuse_large(len(form.names), text.count("\n") - form.before)
+    columns = Columns(form.names, {}, {}, form.units, form.before + 1, _rows(text, form), form.decimal)
     table = _read(text, form)
-    columns = Columns(form.names, {}, {}, form.units, form.before + 1)
     for i, name in enumerate(form.names):
         column = table.column(i)
         try:
@@ -68,9 +72,20 @@ def text_columns(content: bytes) -> Columns:
 def mistake(columns: Columns, name: str) -> InputError:
     """Return the refusal of a column that is needed as numbers: its first word that is no number."""
     words = columns.words[name]
-    first = next(i for i, word in enumerate(words) if not _is_number(word) and word not in LOST)
-    text = f"row {columns.row(first)}, column {one_line(short(name))}: {short(words[first])} is no number"
-    return InputError(text, "record")
+    for i, word in enumerate(words):
+        plain = word.strip().replace(columns.decimal, ".")
+        if plain not in LOST and _NUMERAL.fullmatch(plain) is None:
+            text = f"row {columns.row(i)}, column {one_line(short(name))}: {one_line(short(word))} is no number"
+            return InputError(text, "record")
+    return InputError(f"column {one_line(short(name))} has words and no numbers", "record")
+
+
+def _rows(text: str, form: Form) -> NDArray[np.int64] | None:
+    """Return the line of each row, where lines without a row are between them."""
+    if "\n\n" not in text:
+        return None
+    lines = text.split("\n")
+    return np.array([i + 1 for i, line in enumerate(lines) if i >= form.before and line], dtype=np.int64)
 
 
 def _decoded(content: bytes) -> str:
@@ -185,6 +200,7 @@ def _numbers(column: pa.ChunkedArray, decimal: str) -> pa.ChunkedArray:
     words = pc.utf8_trim_whitespace(column)
     if decimal == ",":
         words = pc.replace_substring(words, ",", ".")
+    words = pc.replace_substring_regex(words, "^([-+.0-9]+)[dD]", r"\1e")  # as Fortran writes exponents
     lost = pc.is_in(words, value_set=pa.array(LOST))
     words = pc.if_else(lost, pa.scalar(None, pa.string()), words)
     return pc.fill_null(pc.cast(words, pa.float64()), float("nan"))

@@ -26,6 +26,12 @@ def benchmark(
     check: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Recompute these results and compare them.")
     ] = None,
+    export: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the cases as files for other tools, and measure nothing.")
+    ] = None,
+    outside: Annotated[
+        Path | None, typer.Option("--answers", metavar="DIR", help="Score probabilities that another tool computed.")
+    ] = None,
     units: UnitOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -39,6 +45,8 @@ def benchmark(
 
     if check is not None and (unit is not None or track is not None or units):
         raise InputError("recomputes what the file has; give neither a unit nor a track", "--check")
+    if (export or outside) and (unit is not None or units or check is not None or (export and outside)):
+        raise InputError("goes with --track and --seeds alone", "--export" if export else "--answers")
     own = with_units({}, units or ()).get("units", {})
     if track is not None:
         one_track(track)
@@ -49,11 +57,23 @@ def benchmark(
         if sys.stderr.isatty():
             sys.stderr.write(f"\r{name}: {done} of {runs} runs" + ("\n" if done == runs else ""))
 
+    asked = [track] if track is not None else names
+    if export is not None:
+        from scenarios.records.benchmark_files import export_cases
+
+        say(f"{export_cases(export, asked, chosen, told)} files in {export}")
+        return
+    if outside is not None:
+        from scenarios.records.benchmark_files import score_answers
+
+        found = score_answers(outside, asked, chosen, told)
+        say(benchmark_results.write(found).rstrip() if as_json else benchmark_text(found, tracks()))
+        return
     if check is None:
         from scenarios.speed.diagnosers import diagnoser_costs
 
         named = [unit] if unit is not None else [*own] or [*registry.blocks("diagnose")]
-        found = measure(named, [track] if track is not None else names, chosen, told, own)
+        found = measure(named, asked, chosen, told, own)
         found = found.model_copy(update={"costs": diagnoser_costs({row.unit: None for row in found.rows}, own)})
         if unit is None and not own:
             found = found.without_cases()  # a megabyte
@@ -64,6 +84,8 @@ def benchmark(
         raise InputError(f"has results of the list {given.seeds}; name that list, or its file", "--seeds")
     if not given.rows:
         raise InputError("has no rows", "--check")
+    if not given.sources:
+        raise InputError("has rows computed outside; score their files again with --answers", "--check")
     found = measure([*given.sources], [*{row.track: None for row in given.rows}], chosen, told, given.units)
     differences = given.differences(found)
     if differences and given.version != found.version:

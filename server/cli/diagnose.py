@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from core.errors import InputError
 from core.format import format_short
+from scenarios.records.examples import example
 from server.cli.replay import BenchOption, FileArgument, MapOption, PairingOption, RateOption, read_file
 from server.cli.terminal import JsonOption, load, plainly, say, say_json
 from server.cli.units import UnitOption
 
 if TYPE_CHECKING:
     from scenarios.records.diagnosis import RecordDiagnosis
+    from scenarios.records.reading import ReadRecord
 
-NO_FAULT, FAULT, REFUSED = 0, 1, 3
-MOST_UNEXPLAINED = 0.2
-"""Share of unexplained samples from which a record counts as unexplained."""
+EXITS = {"no fault": 0, "fault": 1, "unexplained": 3, "refused": 3}
 
 
 @plainly
@@ -32,21 +33,37 @@ def diagnose_file(
     rate_khz: RateOption = None,
     pairing: PairingOption = "next",
     units: UnitOption = None,
+    html: Annotated[
+        Path | None, typer.Option("--html", metavar="REPORT", help="Write a report here, one file.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Calibrate by a healthy stretch and diagnose; exit code 0: no fault, 1: a fault, 3: refused or unexplained."""
     from scenarios.records.diagnosis import as_document, diagnose  # scipy: most commands do without it
 
     read = read_file(file, named, rate_khz, pairing)
-    first, end = _stretch(healthy, read.record.samples)
+    known = None if file.exists() else example(str(file))
+    first, end = (0, known.healthy) if known and healthy is None else _stretch(healthy, read.record.samples)
     found = diagnose(read.record, load(scenario, units), first, end)
+    if html is not None:
+        _write_report(html, found, read, file)
     if as_json:
-        say_json({**as_document(found), "columns": read.columns, "notes": read.notes, "exit": _exit(found)})
+        say_json({**as_document(found), "columns": read.columns, "notes": read.notes, "exit": EXITS[found.outcome]})
     else:
         for note in read.notes:
             say(f"note: {note}")
         say(_text(found))
-    raise typer.Exit(_exit(found))
+    raise typer.Exit(EXITS[found.outcome])
+
+
+def _write_report(path: Path, found: RecordDiagnosis, read: ReadRecord, file: Path) -> None:
+    from scenarios.report.diagnosis import diagnosis_report  # templates: only reports need them
+    from scenarios.report.traces import write_text
+
+    try:
+        write_text(path, diagnosis_report(found, file.name, read.columns, read.notes))
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}", "--html") from None
 
 
 def _stretch(text: str | None, samples: int) -> tuple[int, int | None]:
@@ -57,19 +74,6 @@ def _stretch(text: str | None, samples: int) -> tuple[int, int | None]:
         return int(first or 0), int(end) if end else samples
     except ValueError:
         raise InputError(f"must be A:B, two samples, got {text!r}", "--healthy", "--healthy 0:2000") from None
-
-
-def _exit(found: RecordDiagnosis) -> int:
-    """Return the exit code: the bank with the worst news decides."""
-    from scenarios.records.diagnosis import UNEXPLAINED, UNSURE
-
-    if found.refusal:
-        return REFUSED
-    codes = [NO_FAULT]
-    for name, shares in found.shares.items():
-        faults = set(shares) - {UNEXPLAINED, UNSURE, found.healthy[name]}
-        codes.append(REFUSED if shares.get(UNEXPLAINED, 0.0) >= MOST_UNEXPLAINED else FAULT if faults else NO_FAULT)
-    return max(codes)
 
 
 def _text(found: RecordDiagnosis) -> str:
@@ -92,6 +96,7 @@ def _text(found: RecordDiagnosis) -> str:
     lines.append(f"  {'noise':<10} {format_short(one.noise_um, 'um')}")
     if found.refusal:
         return "\n".join([*lines, f"REFUSED: {found.refusal}"])
+    lines.append(found.sentence)
     for name, verdicts in found.verdicts.items():
         shares = ", ".join(f"{word} {100.0 * share:.0f} %" for word, share in found.shares[name].items())
         lines.append(f"{name}: {shares}")

@@ -10,6 +10,7 @@ import typer
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
 from scenarios.reading import read_bytes
+from scenarios.records.examples import example
 from scenarios.records.reading import MOST_BYTES, ReadRecord, read_record
 from scenarios.records.shelf import RecordFolder
 from scenarios.report.text import run_text
@@ -22,13 +23,15 @@ from server.cli.units import UnitOption
 def read_file(
     file: Path, named: list[str] | None, rate_khz: float | None, pairing: Literal["next", "last"]
 ) -> ReadRecord:
-    """Return the record in a file.
+    """Return the record in a file, or the example record of this name.
 
     Raises
     ------
     InputError
         When it cannot be read, or is no record.
     """
+    if not file.exists() and file.name == str(file) and (known := example(file.name)) is not None:
+        file = known.path
     content = read_bytes(file, "FILE", MOST_BYTES)
     return read_record(content, file.name, named=_named(named), rate_khz=rate_khz, pairing=pairing)
 
@@ -44,7 +47,9 @@ def _named(texts: list[str] | None) -> dict[str, str]:
     return found
 
 
-FileArgument = Annotated[Path, typer.Argument(metavar="FILE", help="CSV, Parquet, MAT or NetCDF.")]
+FileArgument = Annotated[
+    Path, typer.Argument(metavar="FILE", help="CSV, Parquet, MAT, NPZ, NetCDF or HDF5; or the name of an example.")
+]
 MapOption = Annotated[
     list[str] | None,
     typer.Option(

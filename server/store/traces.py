@@ -1,4 +1,4 @@
-"""Traces as files: Parquet, CSV, NPZ, MAT."""
+"""Traces as files: Parquet, CSV, NPZ, MAT, MCAP."""
 
 from __future__ import annotations
 
@@ -14,17 +14,19 @@ from core.errors import InputError, unknown
 from scenarios.arrow import csv, pa, pq
 from scenarios.report.matlab import variables
 from scenarios.report.traces import packing
+from server.store.mcap_trace import write_mcap
 
 LARGEST = 2**62
 NAMES = "names"
 """Structure of a MAT file with the name of the signal in each variable."""
-Format = Literal["csv", "parquet", "npz", "mat"]
+Format = Literal["csv", "parquet", "npz", "mat", "mcap"]
 
 MEDIA_TYPES: dict[str, str] = {
     "csv": "text/csv; charset=utf-8",
     "parquet": "application/vnd.apache.parquet",
     "npz": "application/octet-stream",
     "mat": "application/octet-stream",
+    "mcap": "application/octet-stream",
 }
 
 
@@ -105,6 +107,9 @@ def write(table: pa.Table, file: BinaryIO, kind: Format) -> None:
         return
     if kind == "csv":
         csv.write_csv(table, file)
+        return
+    if kind == "mcap":
+        write_mcap(table, file)
         return
     arrays = {name: table.column(name).to_numpy() for name in table.column_names}
     if kind == "npz":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,31 @@ def test_a_device_outside_the_model_is_refused_in_a_sentence(outside: str) -> No
     assert found.refusal and not all(check.ok for check in found.checks)
     words = {"drifting delay": "delay", "higher order": "higher order"}.get(outside, outside)
     assert words in found.refusal
+
+
+def lossy(one: Foreign, share: float = 0.15) -> MeasuredRecord:
+    """Return a record that lacks samples, one by one and in a stretch."""
+    displacement, rng = one.displacement.copy(), np.random.default_rng(4)
+    displacement[rng.random(len(displacement)) < share] = np.nan
+    displacement[300:340] = np.nan
+    return MeasuredRecord(1 / DT, one.drive.copy(), displacement)
+
+
+@pytest.mark.parametrize("outside", ["friction", "second mode"])
+def test_lost_samples_change_no_reason(outside: str) -> None:
+    one, nominal = draw(3, outside, HEALTHY), get("first-look").spec.nominal
+    whole, holes = calibrate(record_of(one), nominal), calibrate(lossy(one), nominal)
+    words = [re.sub(r"[\d.-]+", "#", found.refusal) for found in (whole, holes)]
+    assert words[0] == words[1] != ""
+    shares = [re.findall(r"explains (\d+) %", found.refusal) for found in (whole, holes)]
+    assert not shares[0] or abs(int(shares[0][0]) - int(shares[1][0])) <= 3
+
+
+def test_lost_samples_refuse_no_device_that_fits() -> None:
+    one, nominal = draw(1, samples=HEALTHY), get("first-look").spec.nominal
+    whole, holes = calibrate(record_of(one), nominal), calibrate(lossy(one, 0.4), nominal)
+    assert not holes.refusal and abs(holes.mass.value - whole.mass.value) < 4 * holes.mass.error
+    assert 1.0 < holes.mass.error / whole.mass.error < 2.0
 
 
 def test_a_single_tone_cannot_tell_mass_from_stiffness() -> None:

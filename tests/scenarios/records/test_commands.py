@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -58,9 +60,40 @@ def test_diagnose_tells_a_fault_from_health_by_its_exit_code(call: Call, tmp_pat
     assert found["calibration"]["mass"]["value"] == pytest.approx(one.ratios["mass"], rel=0.01)
 
 
+def test_a_report_is_one_file_that_says_the_verdict(call: Call, tmp_path: Path) -> None:
+    file = foreign(tmp_path / "<b>fault.csv", draw(1), 3000)
+    said = call("diagnose", file, "--healthy", "0:2000", "--html", "a.html", "--json")
+    page, found = (tmp_path / "a.html").read_text(), json.loads(said.output)
+    assert found["outcome"] == "fault" and escape(found["sentence"]) in page
+    assert "A controller cannot drive a record" in page and "&lt;b&gt;fault.csv" in page
+    for entry in found["verdicts"]["kalman"]:
+        assert f"<td>{entry['first']}</td><td>{entry['end']}</td><td>{entry['verdict']}</td>" in page
+    assert page.count("<svg") == 5 and not re.search(r"(src|href)=|url\(|<script|<link", page)
+    unwritten = call("diagnose", file, "--healthy", "0:2000", "--html", "nowhere/a.html")
+    assert unwritten.exit_code == 2 and "--html: cannot write nowhere/a.html" in unwritten.stderr
+
+
+def test_a_report_is_as_loud_about_a_record_that_no_hypothesis_explains(call: Call, tmp_path: Path) -> None:
+    one = draw(1, samples=4000)
+    y = one.displacement.copy()
+    y[2000:] += 0.3 * np.sin(np.arange(2000))
+    said = call("diagnose", written(tmp_path / "odd.csv", one.drive, y), "--healthy", "0:2000", "--html", "a.html")
+    assert said.exit_code == 3 and "Unexplained: no hypothesis of kalman fits" in said.output
+    assert '<p class="outcome bad">Unexplained: no hypothesis' in (tmp_path / "a.html").read_text()
+
+
 def test_a_record_that_does_not_fit_is_refused_with_the_reason(call: Call, tmp_path: Path) -> None:
-    refused = call("diagnose", foreign(tmp_path / "rubbed.csv", draw(3, "friction"), 2400), "--healthy", "0:2000")
+    refused = call(
+        "diagnose",
+        foreign(tmp_path / "rubbed.csv", draw(3, "friction"), 2400),
+        "--healthy",
+        "0:2000",
+        "--html",
+        "a.html",
+    )
     assert refused.exit_code == 3 and "REFUSED: friction explains" in refused.output
+    page = (tmp_path / "a.html").read_text()
+    assert '<p class="outcome bad">Refused: friction explains' in page and "does not hold" in page
 
 
 @pytest.mark.parametrize(

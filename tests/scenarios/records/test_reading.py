@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from scipy.io import savemat
+from scipy.io import netcdf_file, savemat
 
 from core.errors import InputError
 from scenarios.records.reading import ReadRecord, read_record
@@ -26,6 +26,54 @@ def text(head: str = HEAD, sep: str = ",", decimal: str = ".", columns: tuple[np
 
 def read(content: str | bytes, name: str = "a.csv", **more: object) -> ReadRecord:
     return read_record(content.encode() if isinstance(content, str) else content, name, **more)  # type: ignore[arg-type]
+
+
+def netcdf(*columns: tuple[str, str, np.ndarray]) -> bytes:
+    """Return a NetCDF file."""
+    content = io.BytesIO()
+    with netcdf_file(content, "w") as file:
+        file.createDimension("time", N)
+        for name, unit, values in columns:
+            one = file.createVariable(name, "f8", ("time",))
+            one[:], one.units = values, unit
+        file.flush()
+        return content.getvalue()
+
+
+def test_labels_and_gaps_of_netcdf_and_scaled_numbers_are_read() -> None:
+    content = io.BytesIO()
+    with netcdf_file(content, "w") as file:
+        for name, count in (("time", N), ("letters", 8)):
+            file.createDimension(name, count)
+        for name, values in (("t_ms", T), ("u", U)):
+            file.createVariable(name, "f8", ("time",))[:] = values
+        y = file.createVariable("y_nm", "i2", ("time",))
+        y[:], y.scale_factor, y.add_offset, y._FillValue = np.arange(N), 2.0, 1.0, np.int16(7)
+        file.createVariable("label", "S1", ("time", "letters"))[:] = [list("healthy".ljust(8, "\0"))] * N
+        file.flush()
+        found = read(content.getvalue(), "a.nc")
+    expected = (np.arange(N) * 2.0 + 1.0) / 1e3
+    expected[7] = np.nan
+    assert np.allclose(found.record.displacement, expected, rtol=1e-15, equal_nan=True)
+    assert found.record.hypotheses == ("healthy",) and found.notes == ["1 sample is lost"]
+
+
+def test_hdf5_files_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    h5py = pytest.importorskip("h5py")
+    content = io.BytesIO()
+    with h5py.File(content, "w") as file:
+        for name, unit, values in (("run/time", "ms", T), ("run/drive", "V", U), ("run/y", "um", Y)):
+            file.create_dataset(name, data=values, compression="gzip").attrs["units"] = unit
+    named = {"time": "run/time", "drive": "run/drive", "displacement": "run/y"}
+    keys = {read(content.getvalue(), name, named=named).record.key for name in ("a.h5", "a.hdf5", "a.nc")}
+    assert keys == {read(text()).record.key}
+
+
+def test_hdf5_without_its_package_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.extras.find_spec", lambda _: None)
+    with pytest.raises(InputError, match="needs the package h5py, which is not installed") as refused:
+        read(b"\x89HDF\r\n\x1a\n", "a.h5")
+    assert ".[files]" in str(refused.value) or ".[files]" in refused.value.hint
 
 
 GOOD = {
@@ -58,11 +106,10 @@ def test_files_with_types_give_the_same_bits() -> None:
     pq.write_table(pa.table({"time_ms": T, "drive.voltage": U, "sensor.displacement": Y}), table)
     matrix = io.BytesIO()
     savemat(matrix, {"t_ms": T, "u": U, "y": Y})
-    data = pytest.importorskip("xarray").Dataset(
-        {"drive": ("time", U, {"units": "V"}), "displacement": ("time", Y, {"units": "um"})},
-        coords={"time": ("time", T, {"units": "ms"})},
-    )
-    contents = {"a.parquet": table.getvalue(), "a.mat": matrix.getvalue(), "a.nc": bytes(data.to_netcdf())}
+    packed = io.BytesIO()
+    np.savez_compressed(packed, time_ms=T, drive=U, displacement=Y)
+    contents = {"a.parquet": table.getvalue(), "a.mat": matrix.getvalue(), "a.npz": packed.getvalue()}
+    contents |= {"a.nc": netcdf(("time", "ms", T), ("drive", "V", U), ("displacement", "um", Y))}
     keys = {read(content, name).record.key for name, content in contents.items()}
     assert keys == {read(text()).record.key}
 
@@ -133,7 +180,7 @@ HOSTILE = {
     "a short row": (text().replace(f",{float(Y[7])!r}", ""), "row 9 has 2 fields"),
     "a time twice": (text(columns=(np.sort(np.r_[T[:-1], T[5]]), U, Y)), "does not rise"),
     "a time that falls": (text(columns=(T[::-1], U, Y)), "does not rise"),
-    "a time that is no number": (spoiled(0, 3, "nan"), "row 4: time_ms is no finite number"),
+    "a time that is no number": (spoiled(0, 3, "nan"), "row 4, column 'time_ms': a time must be a finite number"),
     "a wrong unit": (text("t (ms),drive (V),displacement (kg)"), "'kg'; allowed: m, mm"),
     "two of a name": (text("time_ms,drive,drive"), "two columns"),
     "no displacement": (text("time_ms,drive,b"), "no column for the displacement"),

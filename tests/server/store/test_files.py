@@ -13,13 +13,15 @@ import pyarrow.parquet as pq
 import pytest
 from scipy.io import loadmat
 
+from core.errors import InputError
 from scenarios.report.traces import schema_of
 from server.bench.recorder import Recorder
 from server.store.recording import RecordingFile, convert, rescue
 from server.store.traces import MEDIA_TYPES, table_of, write
 
 DT = 0.01
-SCHEMA = schema_of({"plant.displacement": "um", "drive.voltage": "V"}, {"scenario": "mine"}, "float32")
+UNITS = {"plant.displacement": "um", "drive.voltage": "V"}
+SCHEMA = schema_of(UNITS, {"scenario": "mine"}, "float32")
 SAMPLES = np.array([[1.5, -2.25, 3e-7], [10.0, 0.0, -1e9]], np.float32)
 
 
@@ -30,9 +32,34 @@ def read(path: Path, kind: str) -> dict[str, Any]:
         return {name: column.to_numpy() for name, column in zip(*_columns(pyarrow.csv.read_csv(path)), strict=True)}
     if kind == "npz":
         return dict(np.load(path))
+    if kind == "mcap":
+        return of_mcap(path)
     found = {k: v for k, v in loadmat(path).items() if not k.startswith("__")}
     names = found.pop("names")
     return {str(names[variable][0, 0][0]): values[:, 0] for variable, values in found.items()}
+
+
+def of_mcap(path: Path) -> dict[str, Any]:
+    """Return the signals of an MCAP file, each message checked against its schema, which is checked too."""
+    import jsonschema
+    from mcap.reader import make_reader
+
+    found: dict[str, Any] = {}
+    with path.open("rb") as file:
+        for schema, channel, message in make_reader(file).iter_messages():
+            assert schema is not None and (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
+            said, rule = json.loads(message.data), json.loads(schema.data)
+            jsonschema.Draft202012Validator.check_schema(rule)
+            jsonschema.Draft202012Validator(rule).validate(said)
+            assert message.log_time == round(said["time_ms"] * 1e6)
+            for name, value in said.items():
+                if name in ("tick", "time_ms") and channel.topic != "/plant":
+                    continue
+                full = name if name in ("tick", "time_ms") else f"{channel.topic[1:]}.{name}"
+                found.setdefault(full, []).append(np.nan if value is None else value)
+                if full not in ("tick", "time_ms"):
+                    assert rule["properties"][name]["unit"] == UNITS[full]
+    return {name: np.array(values) for name, values in found.items()}
 
 
 def _columns(table: Any) -> tuple[list[str], list[Any]]:
@@ -50,6 +77,21 @@ def test_every_format_holds_the_same_numbers(tmp_path: Path, kind: Any) -> None:
     np.testing.assert_allclose(found["time_ms"], [1.0, 1.01, 1.02])
     np.testing.assert_array_equal(np.float32(found["plant.displacement"]), SAMPLES[0])
     np.testing.assert_array_equal(np.float32(found["drive.voltage"]), SAMPLES[1])
+
+
+def test_a_number_that_is_not_finite_is_null_in_mcap(tmp_path: Path) -> None:
+    path = tmp_path / "trace.mcap"
+    with path.open("wb") as file:
+        write(table_of(SCHEMA, 0, DT, np.array([[1.0, np.nan], [np.inf, 2.0]], np.float32)), file, "mcap")
+    found = of_mcap(path)
+    assert np.isnan(found["plant.displacement"][1]) and np.isnan(found["drive.voltage"][0])
+
+
+def test_mcap_without_its_package_is_one_clear_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.extras.find_spec", lambda _: None)
+    with (tmp_path / "trace.mcap").open("wb") as file, pytest.raises(InputError, match="package mcap") as refused:
+        write(table_of(SCHEMA, 0, DT, SAMPLES), file, "mcap")
+    assert refused.value.field == "format" and "[files]" in refused.value.hint
 
 
 def test_units_and_origin_are_kept_in_the_file(tmp_path: Path) -> None:

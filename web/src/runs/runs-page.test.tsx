@@ -78,7 +78,7 @@ it("shows a run that is chosen: its figures with units, its digest and its files
   expect(result.getByRole("heading", { name: "quiet <b>bench</b>" })).toBeVisible();
   expect(result.getByRole("row", { name: /^natural frequency.*2\.48378|^f0.*2\.48378|2483\.78/i })).toBeVisible();
   expect(result.getByText("digest digest")).toBeVisible();
-  for (const format of ["CSV", "PARQUET", "NPZ", "MAT"])
+  for (const format of ["CSV", "PARQUET", "NPZ", "MAT", "MCAP"])
     expect(result.getByRole("link", { name: format })).toHaveAttribute(
       "href",
       `./api/v1/runs/run-2/trace?format=${format.toLowerCase()}`,

@@ -23,4 +23,4 @@ export function Downloads({ href, formats }: { href: (format: string) => string;
   );
 }
 
-export const TRACE_FORMATS = ["csv", "parquet", "npz", "mat"] as const;
+export const TRACE_FORMATS = ["csv", "parquet", "npz", "mat", "mcap"] as const;
