@@ -1,0 +1,36 @@
+import { Button } from "@mantine/core";
+import { send } from "../bench/send";
+import { useBench } from "../stream/bench-store";
+import { formatMoment } from "../ui/format";
+import { NoticeLine } from "./notice-line";
+
+/** Where the bench plays a record: how long it is, and that it has a truth only by its labels. */
+export function RecordLine() {
+  const bench = useBench((s) => (s.bench?.record ? s.bench : undefined));
+  if (!bench?.record) return null;
+  const { samples, labels } = bench.record;
+  const truth =
+    labels.length > 0
+      ? "Its labels are the truth."
+      : "It has no labels: the truth is not known, and there are verdicts without a score.";
+  const isFast = bench.time_scale === null;
+  return (
+    <NoticeLine
+      label="Record"
+      tone="note"
+      title="Record:"
+      text={`${formatMoment(samples * bench.dt_ms)} of a real device. ${truth}`}
+    >
+      {bench.state !== "tripped" && (
+        <Button
+          aria-pressed={isFast}
+          onClick={() =>
+            void send({ kind: "time_scale", value: isFast ? 0.002 : null }, isFast ? "Slower" : "As fast as it goes")
+          }
+        >
+          As fast as it goes
+        </Button>
+      )}
+    </NoticeLine>
+  );
+}
