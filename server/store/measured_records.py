@@ -45,8 +45,8 @@ class KeptRecord(BaseModel):
     notes: list[str] = Field(description="Sentences about lost samples and irregular times")
     labels: list[str] = Field(description="Names of its labels; empty: it has none, and so no score")
     lost: int = Field(description="Samples without a displacement")
-    drive_v: tuple[float, float] = Field(description="Least and largest voltage")
-    displacement_um: tuple[float, float] = Field(description="Least and largest displacement")
+    drive_v: list[float] = Field(description="Least and largest voltage")
+    displacement_um: list[float] = Field(description="Least and largest displacement")
     created: datetime
 
 

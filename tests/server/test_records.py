@@ -18,7 +18,7 @@ from scenarios.records.bench import on_record
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 from tests.scenarios.records.foreign import DT, draw
-from tests.server.classroom.group import join, open_class
+from tests.server.classroom.group import Somebody, join, open_class
 from tests.server.conftest import Live, serving
 
 RECORDS = "/api/v1/records"
@@ -112,8 +112,11 @@ def test_blocks_of_any_length_and_a_look_back_have_one_digest(live: Live, foreig
     assert len(digests[17_162]) == 1
     live.command(bench, "time_scale", value=None)
     live.command(bench, "start")
+    live.until(bench, lambda seen: seen["state"] != "running")
+    assert live.get(bench)["tick"] == 17_200 and live.get(bench)["trip"] is None
+    live.command(bench, "start")
     live.until(bench, lambda seen: seen["state"] == "tripped")
-    assert live.get(bench)["tick"] == 17_200
+    assert live.get(bench)["trip"]["reason"] == "the record has ended"
     for injected in ({"fault": "added_mass", "severity": 0.05}, {"set": {"plant.record": foreign["key"]}}):
         refused = live.command(bench, **injected)
         assert refused.status_code == 422 and "\n" not in refused.json()["error"]["message"]
@@ -153,7 +156,8 @@ def test_a_calibration_finds_the_device_and_goes_on_any_bench(live: Live, foreig
         bench = live.bench(scenario, record=record, device=device, paused=True)
         toml = live.http.get(f"/api/v1/benches/{bench['id']}/scenario").text
         assert f"mass_kg = {found['values']['device.mass_kg']!r}" in toml
-        assert ("delay_samples" in toml) == bool(record)
+        plant = bench["parameters"]["plant"]
+        assert plant.get("offset_um") == (found["values"]["plant.offset_um"] if record else None)
     assert live.http.delete(f"{DEVICES}/{device}").status_code == 204
     assert live.http.post("/api/v1/benches", json={"scenario": "first-look", "device": device}).status_code == 404
 
@@ -193,9 +197,9 @@ def test_the_key_of_a_run_holds_the_record(live: Live, foreign: dict[str, Any]) 
 @pytest.mark.parametrize(
     ("content", "query", "said"),
     [
-        (b"time_ms,drive,displacement\n0,1,2\n0.02,x,2\n", {}, "row 3, column drive: 'x' is no number"),
+        (b"time_ms,drive,displacement\n0,1,2\n0.02,x,2\n", {}, "row 3, column 'drive': 'x' is no number"),
         (b"time_ms,drive,displacement\n0,1,2\n0,1,2\n", {}, "row 3: time_ms does not rise"),
-        (b"a,b\n1,2\n3,4\n", {}, "has no column for the drive; its columns are a, b"),
+        (b"a,b\n1,2\n3,4\n", {}, "has no column for the drive; its columns are 'a', 'b'"),
         (b"drive,displacement\n1,2\n3,4\n", {}, "has no column of times"),
         (b"drive,displacement\n1,2\n3,4\n", {"drive": "z", "rate_khz": 1}, "unknown column 'z'"),
         (b"\0\1\2\3" * 50, {}, "is no text"),
@@ -261,26 +265,31 @@ def test_a_record_that_plays_stays_and_one_that_does_not_goes(live: Live) -> Non
 def test_a_student_sees_the_own_records_alone_within_limits(live: Live, foreign: dict[str, Any]) -> None:
     group = open_class(live)
     ada, ben = join(live, group, "Ada"), join(live, group, "Ben")
+
+    def brought(who: Somebody, content: bytes, **query: Any) -> Any:
+        return who.ask("POST", RECORDS, content=content, params={"name": "device.csv", **query})
+
     one = draw(1)
-    content = csv(one.drive[:3000], one.displacement[:3000])
-    made = bring(ada.http, content)
+    made = brought(ada, csv(one.drive[:3000], one.displacement[:3000]))
     assert made.status_code == 201 and made.json()["key"] == foreign["key"] and made.json()["id"] != foreign["id"]
     path = f"{RECORDS}/{made.json()['id']}"
-    assert [one["id"] for one in ada.http.get(RECORDS).json()["records"]] == [made.json()["id"]]
-    assert ben.http.get(RECORDS).json()["records"] == []
+    assert [one["id"] for one in ada.ask("GET", RECORDS).json()["records"]] == [made.json()["id"]]
+    assert ben.ask("GET", RECORDS).json()["records"] == []
     for method, more in (("GET", ""), ("DELETE", ""), ("POST", "/calibration"), ("POST", "/diagnosis")):
-        assert ben.http.request(method, path + more, json={} if more else None).status_code == 404
-    refused = ben.http.post("/api/v1/benches", json={"scenario": "first-look", "record": made.json()["id"]})
-    assert refused.status_code == 404
+        assert ben.ask(method, path + more, **({"json": {}} if more else {})).status_code == 404
+    wanted = {"scenario": "first-look", "record": made.json()["id"]}
+    assert ben.ask("POST", "/api/v1/benches", json=wanted).status_code == 404
     assert live.http.get(path).status_code == 200
-    bench = ada.http.post("/api/v1/benches", json={"scenario": "first-look", "record": made.json()["id"]})
-    assert bench.status_code == 201, bench.text
-    assert ada.http.post(DEVICES, json={"name": "x", "record": made.json()["id"]}).status_code == 403
-    large = bring(ben.http, b"drive,displacement\n" + b"1,2\n" * 300_000, rate_khz=50)
+    bench = ada.ask("POST", "/api/v1/benches", json=wanted)
+    assert bench.status_code == 201 and bench.json()["record"]["key"] == foreign["key"], bench.text
+    found = ada.ask("POST", f"{path}/calibration", json={"end": 2000})
+    assert found.status_code == 200 and found.json()["refusal"] == ""
+    assert ada.ask("POST", DEVICES, json={"name": "x", "record": made.json()["id"]}).status_code == 403
+    large = brought(ben, b"drive,displacement\n" + b"1,2\n" * 300_000, rate_khz=50)
     assert large.status_code == 413 and "student_record_mb" in large.json()["error"]["hint"]
     for i in range(8):
-        assert bring(ben.http, f"drive,displacement\n1,2\n3,{i}\n".encode(), rate_khz=50).status_code == 201
-    full = bring(ben.http, b"drive,displacement\n1,2\n3,9\n", rate_khz=50)
+        assert brought(ben, f"drive,displacement\n1,2\n3,{i}\n".encode(), rate_khz=50).status_code == 201
+    full = brought(ben, b"drive,displacement\n1,2\n3,9\n", rate_khz=50)
     assert full.status_code == 409 and "8 records" in full.json()["error"]["message"]
     live.http.delete(f"/api/v1/classes/{group['id']}")
 

@@ -5881,18 +5881,12 @@ export interface components {
              * Drive V
              * @description Least and largest voltage
              */
-            drive_v: [
-                number,
-                number
-            ];
+            drive_v: number[];
             /**
              * Displacement Um
              * @description Least and largest displacement
              */
-            displacement_um: [
-                number,
-                number
-            ];
+            displacement_um: number[];
             /**
              * Created
              * Format: date-time
@@ -7638,18 +7632,12 @@ export interface components {
              * Drive V
              * @description Least and largest voltage
              */
-            drive_v: [
-                number,
-                number
-            ];
+            drive_v: number[];
             /**
              * Displacement Um
              * @description Least and largest displacement
              */
-            displacement_um: [
-                number,
-                number
-            ];
+            displacement_um: number[];
             /**
              * Created
              * Format: date-time
