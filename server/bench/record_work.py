@@ -64,7 +64,7 @@ class TakenIn:
 
 
 def take_in(upload: Path, mapping: RecordMapping, most_bytes: int) -> TakenIn:
-    """Read the file of an upload, and write its record beside it, under its key.
+    """Read the file of an upload; its record is written into the same folder, under its key.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def take_in(upload: Path, mapping: RecordMapping, most_bytes: int) -> TakenIn:
 
 
 def columns_of(upload: Path, name: str) -> dict[str, Any]:
-    """Return the columns of a file, and those that are found by their names.
+    """Return the columns of a file, and the column of each part that has a usual name.
 
     Raises
     ------

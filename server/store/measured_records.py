@@ -128,7 +128,7 @@ class MeasuredRecords:
             return _shown(row), is_added
 
     async def check_room(self, owner: str) -> None:
-        """Refuse another record of a student who has the most already."""
+        """Refuse a student more records than the limit."""
         if not owner:
             return
         query = select(func.count()).select_from(RecordRow).filter_by(owner=owner)
@@ -137,7 +137,7 @@ class MeasuredRecords:
             raise ApiError(409, "limit", text, hint="delete one first")
 
     async def all(self, owner: str | None = None, page: ListPage = WHOLE) -> list[KeptRecord]:
-        """List records, newest first: all of them, or those of an owner."""
+        """List records, newest first: all of them, or the records of an owner."""
         query = page.chosen(select(RecordRow), RecordRow.created, RecordRow.id, newest_first=True)
         if owner is not None:
             query = query.where(RecordRow.owner == owner)

@@ -52,7 +52,7 @@ test("a CSV is dropped, calibrated, diagnosed and played on a bench", async ({ p
   expect(end).toBeGreaterThan(2000);
   expect(end).toBeLessThan(4000);
 
-  await sheet.getByRole("button", { name: "Calibrate" }).click();
+  await sheet.getByRole("button", { name: "Calibrate", exact: true }).click();
   await expect(sheet.getByText(/^The fit holds/)).toBeVisible();
   const mass = sheet.getByRole("row", { name: /^Mass over nominal/ }).getByRole("cell").first();
   expect(Number(await mass.textContent())).toBeCloseTo(1.04, 2);

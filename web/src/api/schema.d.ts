@@ -18773,6 +18773,7 @@ export interface operations {
             };
             header?: never;
             path: {
+                /** @description Id of a record of a device */
                 record_id: string;
             };
             cookie?: never;
@@ -18797,6 +18798,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a record of a device */
                 record_id: string;
             };
             cookie?: never;
@@ -18819,6 +18821,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a record of a device */
                 record_id: string;
             };
             cookie?: never;
@@ -18847,6 +18850,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a record of a device */
                 record_id: string;
             };
             cookie?: never;
@@ -18930,6 +18934,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
+                /** @description Id of a measured device */
                 device_id: string;
             };
             cookie?: never;

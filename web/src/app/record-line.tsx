@@ -1,7 +1,7 @@
 import { Button } from "@mantine/core";
 import { send } from "../bench/send";
 import { useBench } from "../stream/bench-store";
-import { formatMoment } from "../ui/format";
+import { formatSi } from "../ui/format";
 import { NoticeLine } from "./notice-line";
 
 /** Where the bench plays a record: how long it is, and that it has a truth only by its labels. */
@@ -19,7 +19,7 @@ export function RecordLine() {
       label="Record"
       tone="note"
       title="Record:"
-      text={`${formatMoment(samples * bench.dt_ms)} of a real device. ${truth}`}
+      text={`${formatSi(samples * bench.dt_ms, "ms")} of a real device. ${truth}`}
     >
       {bench.state !== "tripped" && (
         <Button

@@ -17,7 +17,7 @@ const PAIRINGS = [
   { value: "last", label: "acted until its sample" },
 ] as const;
 
-/** Bring a record in: a file, and its columns and its rate where they are not found; then those that are here. */
+/** Bring a record in: a file, and its columns and its rate where they are not found; then the records of the server. */
 export function BringRecord() {
   const file = useRecords((s) => s.file);
   const [busy, setBusy] = useState(false);

@@ -13,7 +13,7 @@ const ROWS = [
   { name: "mass", label: "Mass over nominal", decimals: 4, unit: "" },
   { name: "damping", label: "Damping over nominal", decimals: 4, unit: "" },
   { name: "stiffness", label: "Stiffness over nominal", decimals: 4, unit: "" },
-  { name: "offset_um", label: "Offset", decimals: 4, unit: " um" },
+  { name: "offset_um", label: "Offset", decimals: 4, unit: " µm" },
   { name: "delay_samples", label: "Delay", decimals: 3, unit: " samples" },
 ] as const;
 

@@ -30,7 +30,7 @@ export function MappingForm({ columns, busy, onRead }: MappingFormProps) {
   const isWhole = asked.every(({ part }) => named[part]) && (!isRegular || Number(rate) > 0);
   return (
     <form
-      aria-label="What the columns are"
+      aria-label="Columns of the file"
       onSubmit={(event) => {
         event.preventDefault();
         onRead({ ...named, ...(isRegular ? { rate_khz: Number(rate) } : {}) });

@@ -18,7 +18,7 @@ export function paintRecord(pen: Pen, box: Box, { record, range, healthy }: Reco
   const lanes = [
     { title: "voltage, V", low: record.plot.drive_low, high: record.plot.drive_high, whole: record.drive_v, slot: 2 },
     {
-      title: "displacement, um",
+      title: "displacement, µm",
       low: record.plot.displacement_low,
       high: record.plot.displacement_high,
       whole: record.displacement_um,
@@ -26,13 +26,15 @@ export function paintRecord(pen: Pen, box: Box, { record, range, healthy }: Reco
     },
   ];
   const height = box.height / lanes.length;
+  const silent = { say: () => [], unit: undefined };
   const time = timeAxis({ start: range[0], end: range[1] }, 1 / record.rate_khz);
   let last: Plot | undefined;
   lanes.forEach(({ title, low, high, whole, slot }, i) => {
     pen.save();
     pen.translate(0, i * height);
     const up = linearAxis(roomAround(whole), title);
-    const plot = paintAxes(pen, { width: box.width, height }, time, up, look, { gutter: GUTTER * look.fontSize });
+    const across = i < lanes.length - 1 ? { ...time, ...silent } : time; // the lowest lane has the numbers
+    const plot = paintAxes(pen, { width: box.width, height }, across, up, look, { gutter: GUTTER * look.fontSize });
     within(pen, plot.field, () => {
       pen.globalAlpha = 0.16;
       pen.fillStyle = CANVAS[look.scheme].accent;

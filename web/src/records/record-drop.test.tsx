@@ -22,7 +22,7 @@ it("takes a record that is dropped anywhere on the page", () => {
 it("leaves other files, and places with drops of their own, alone", () => {
   useView.setState({ dialog: "none" });
   mount(
-    // biome-ignore lint/a11y/noStaticElementInteractions: stands in for a place that takes drops
+    // biome-ignore lint/a11y/noStaticElementInteractions: a place that takes drops in the page
     <div data-testid="own" onDrop={(event) => event.preventDefault()}>
       <RecordDrop />
     </div>,

@@ -4,7 +4,7 @@ import { useCallback, useEffect, useState } from "react";
 import { api } from "../api/api";
 import type { KeptRecord } from "../api/types";
 import styles from "../app/dialogs.module.css";
-import { formatMoment } from "../ui/format";
+import { formatSi } from "../ui/format";
 import { useRecords } from "./open-record";
 
 /** The records that are here, the newest first. */
@@ -52,7 +52,7 @@ export function RecordList({ onError }: { onError(error: unknown): void }) {
 /** The length of a record, and whether it has labels. */
 export const brief = ({ samples, rate_khz, labels }: KeptRecord): string =>
   [
-    formatMoment(samples / rate_khz),
+    formatSi(samples / rate_khz, "ms"),
     `${samples} samples at ${Number(rate_khz.toPrecision(6))} kHz`,
     labels.length > 0 ? `labels ${labels.join(", ")}` : "no labels",
   ].join(" · ");

@@ -105,7 +105,7 @@ it("asks for the columns and the rate only where they were not found, and reads 
   const { user } = mount(<RecordSheet />);
   openRecordFile(csv());
   expect(await screen.findByRole("alert")).toHaveTextContent("mine.csv: record: has no column for the drive");
-  const form = within(await screen.findByRole("form", { name: "What the columns are" }));
+  const form = within(await screen.findByRole("form", { name: "Columns of the file" }));
   expect(form.queryByLabelText("Column of the displacement")).not.toBeInTheDocument();
   const drive = form.getByLabelText("Column of the drive voltage");
   expect(within(drive).getAllByRole("option").map((one) => one.textContent)).toEqual(["choose", "a, in mv", "y"]);
@@ -134,7 +134,7 @@ it("shows a refusal in its words where no column is missing", async () => {
 it("plots voltage and displacement with a gap where samples are lost, and a drag chooses the healthy stretch", async () => {
   const user = await shown();
   const plot = screen.getByRole("img", { name: /^mine\.csv: voltage and displacement/ });
-  expect(penOf(plot).words).toEqual(expect.arrayContaining(["voltage, V", "displacement, um"]));
+  expect(penOf(plot).words).toEqual(expect.arrayContaining(["voltage, V", "displacement, µm"]));
   expect(screen.getByText("Note: 3 samples are lost.")).toBeVisible();
   const stage = screen.getByTestId("record-plot");
   const at = (x: number) => ({ target: stage, coords: { clientX: x, clientY: 40 } });

@@ -68,7 +68,7 @@ function Shown({ record, range, onRange }: ShownProps) {
             .sort(byChapter)
             .map((one) => one.id),
         ),
-      () => undefined, // the usual bench is there without the list
+      () => undefined, // the usual bench needs no list
     );
   }, []);
   const choose = (next: [number, number]) => {
