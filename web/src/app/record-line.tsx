@@ -13,7 +13,6 @@ export function RecordLine() {
     labels.length > 0
       ? "Its labels are the truth."
       : "It has no labels: the truth is not known, and there are verdicts without a score.";
-  const isFast = bench.time_scale === null;
   return (
     <NoticeLine
       label="Record"
@@ -21,13 +20,8 @@ export function RecordLine() {
       title="Record:"
       text={`${formatSi(samples * bench.dt_ms, "ms")} of a real device. ${truth}`}
     >
-      {bench.state !== "tripped" && (
-        <Button
-          aria-pressed={isFast}
-          onClick={() =>
-            void send({ kind: "time_scale", value: isFast ? 0.002 : null }, isFast ? "Slower" : "As fast as it goes")
-          }
-        >
+      {bench.state !== "tripped" && bench.time_scale !== null && (
+        <Button onClick={() => void send({ kind: "time_scale", value: null }, "As fast as it goes")}>
           As fast as it goes
         </Button>
       )}

@@ -1,5 +1,8 @@
 import { screen } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
+import { DeviceSelect } from "../app/header/device-select";
+import { SensorSelect } from "../app/header/header";
+import { hintsOf } from "../app/hints";
 import { RecordLine } from "../app/record-line";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
@@ -32,6 +35,20 @@ it("shows nothing on a bench of a simulated plant", () => {
   connect(bench);
   mount(<RecordLine />);
   expect(screen.queryByRole("region", { name: "Record" })).not.toBeInTheDocument();
+});
+
+it("names the real device and the measured sensor in the header, and lets nobody change them", async () => {
+  server.on("GET", "/devices", { devices: [], geometry: [] });
+  connect({ ...played([]), parameters: { ...bench.parameters, sensor: { kind: "recorded" } } });
+  mount(
+    <>
+      <DeviceSelect />
+      <SensorSelect />
+    </>,
+  );
+  expect(await screen.findByDisplayValue("Real device")).toBeDisabled();
+  expect(screen.getByDisplayValue("As measured")).toBeDisabled();
+  expect(hintsOf(played([]))).toBeUndefined();
 });
 
 it("says that faults of a measured device cannot be injected", () => {

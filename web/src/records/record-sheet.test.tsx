@@ -108,7 +108,11 @@ it("asks for the columns and the rate only where they were not found, and reads 
   const form = within(await screen.findByRole("form", { name: "Columns of the file" }));
   expect(form.queryByLabelText("Column of the displacement")).not.toBeInTheDocument();
   const drive = form.getByLabelText("Column of the drive voltage");
-  expect(within(drive).getAllByRole("option").map((one) => one.textContent)).toEqual(["choose", "a, in mv", "y"]);
+  expect(
+    within(drive)
+      .getAllByRole("option")
+      .map((one) => one.textContent),
+  ).toEqual(["choose", "a, in mv", "y"]);
   const read = form.getByRole("button", { name: "Read the record" });
   expect(read).toBeDisabled();
   await user.selectOptions(drive, "a");
@@ -157,8 +161,14 @@ it("calibrates by the stretch, shows ratios with intervals and the test, and ope
   expect(within(fitted).getByRole("row", { name: /^Mass over nominal/ })).toHaveTextContent("1.03001.0280 to 1.0320");
   const tested = screen.getByRole("table", { name: "Test of the fit" });
   expect(within(tested).getByRole("row", { name: /^Error on the half/ })).toHaveTextContent("1.020 1.300");
-  expect(screen.getByText(words("The fit holds: half of 1000 samples were fitted, the other half tests it."))).toBeVisible();
-  expect(server.asked("POST", "/records/r1/calibration")[0].body).toEqual({ scenario: "first-look", first: 0, end: 1000 });
+  expect(
+    screen.getByText(words("The fit holds: half of 1000 samples were fitted, the other half tests it.")),
+  ).toBeVisible();
+  expect(server.asked("POST", "/records/r1/calibration")[0].body).toEqual({
+    scenario: "first-look",
+    first: 0,
+    end: 1000,
+  });
   await user.click(screen.getByRole("button", { name: "Open on a bench" }));
   await waitFor(() => expect(server.asked("POST", "/benches")).toHaveLength(1));
   expect(server.asked("POST", "/benches")[0].body).toEqual({
@@ -195,7 +205,13 @@ it("shows the verdicts over time, and that there is no score without labels", as
 
 it("keeps the device under a name, for who teaches alone", async () => {
   server.on("POST", "/records/:id/calibration", calibration);
-  server.on("POST", "/measured-devices", { id: "d", name: "wafer 7", record_key: record.key, values: {}, created: record.created });
+  server.on("POST", "/measured-devices", {
+    id: "d",
+    name: "wafer 7",
+    record_key: record.key,
+    values: {},
+    created: record.created,
+  });
   const user = await shown();
   await user.click(screen.getByRole("button", { name: "Calibrate" }));
   await user.type(await screen.findByLabelText("Keep this device as"), "wafer 7");

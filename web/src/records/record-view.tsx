@@ -2,6 +2,7 @@ import { Button, Group, NativeSelect, NumberInput, Text } from "@mantine/core";
 import { IconArrowLeft } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
+import { useMay } from "../api/me";
 import { useAnswer } from "../api/queries";
 import type { DiagnosedRecord, RecordCalibration, RecordDetail } from "../api/types";
 import { openOwn } from "../bench/open-bench";
@@ -100,6 +101,7 @@ function Shown({ record, range, onRange }: ShownProps) {
       setPage("bench");
       useView.setState({ dialog: "none" });
     }, "open");
+  const teaches = useMay("teach");
   const fits = calibration !== undefined && !calibration.refusal;
   return (
     <section aria-label={record.name}>
@@ -162,6 +164,7 @@ function Shown({ record, range, onRange }: ShownProps) {
           {fits ? "Open on a bench" : "Open on a bench, not calibrated"}
         </Button>
       </Group>
+      {!teaches && <p className="note">On a bench it takes the place of yours.</p>}
       {busy && <p role="status">{busy === "open" ? "Making the bench…" : "Computing; seconds on a long record…"}</p>}
       {calibration && <CalibrationView calibration={calibration} />}
       {fits && <SaveDevice record={record.id} stretch={stretch} />}
