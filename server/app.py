@@ -33,6 +33,7 @@ from server.api import (
     lesson,
     links,
     me,
+    measured_devices,
     narration,
     parameter_sets,
     places,
@@ -40,6 +41,7 @@ from server.api import (
     qr,
     readouts,
     recordings,
+    records,
     runs,
     scenarios,
     schemas,
@@ -83,6 +85,8 @@ ROUTERS = (
     snapshots,
     parameter_sets,
     recordings,
+    records,
+    measured_devices,
     trace,
     runs,
     sweeps,
@@ -169,7 +173,10 @@ def create_app(settings: Settings) -> FastAPI:
     app.router.default = app.state.page = Page(prefix=public.prefix)
     # A request passes the middleware that was added last first.
     app.add_middleware(Heads)
-    app.add_middleware(BodyLimit, limit=settings.body_limit_bytes)
+    uploads = dict.fromkeys(
+        records.UPLOADS, (max(settings.max_record_mb, settings.student_record_mb) << 20, "max_record_mb")
+    )
+    app.add_middleware(BodyLimit, limit=settings.body_limit_bytes, uploads=uploads)
     app.add_middleware(
         Gate,
         identity=identity,

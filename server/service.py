@@ -54,6 +54,8 @@ from server.store.change import Change
 from server.store.database import FILE, Database
 from server.store.keeping import Keeping
 from server.store.links import Links
+from server.store.measured_devices import MeasuredDevices
+from server.store.measured_records import MeasuredRecords
 from server.store.parameter_sets import ParameterSets
 from server.store.recordings import Recordings
 from server.stream.hub import Hub
@@ -86,6 +88,8 @@ class Service:
         self.engine = Engine(self.metrics, self._after_round, self.clock)
         self.database = Database(settings.database_url or settings.data / FILE)
         self.recordings = Recordings(self.database, settings.data / "recordings", settings.disk_reserve_bytes)
+        self.measured_records = MeasuredRecords(self.database, settings.data / "records")
+        self.measured_devices = MeasuredDevices(self.database)
         self.parameter_sets = ParameterSets(self.database)
         self.people, self.audit = People(self.database), Audit(self.database)
         self.computing = Computing(self.clock)
@@ -172,9 +176,16 @@ class Service:
     @contextlib.asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
         """Start everything, and stop it in the opposite order."""
+        with self.measured_records.found_by_benches():
+            async with self._running():
+                yield
+
+    @contextlib.asynccontextmanager
+    async def _running(self) -> AsyncIterator[None]:
         self._loop = asyncio.get_running_loop()
         await asyncio.to_thread(self.database.migrate)
         await self.recordings.recover()
+        await self.measured_records.recover()
         await self.people.recover()
         await self.lesson.recover()
         await self.blinds.recover()

@@ -106,10 +106,14 @@ class Settings(BaseSettings):
     )
     max_sweep_runs: int = Field(100_000, ge=1, description="Runs of one campaign.")
     max_recording_ticks: int = Field(20_000_000, ge=1, description="Ticks of one recording.")
+    max_record_mb: int = Field(
+        64, ge=1, le=1000, description="MB of one record of a device: of its file, and of its samples in memory."
+    )
+    student_record_mb: int = Field(8, ge=1, le=1000, description="MB of one record of a student.")
     quota_bytes: int = Field(
         50_000_000_000,
         ge=0,
-        description="Bytes of recordings, runs and their database; beyond, the server refuses new ones.",
+        description="Bytes of recordings, records, runs and their database; beyond, the server refuses new ones.",
     )
     disk_reserve_bytes: int = Field(
         100_000_000,

@@ -22,6 +22,8 @@ from scenarios.campaign.progress import Signs, receive, watched
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
 LOADED = "scenarios.campaign.loaded"
+INHERITED = ("COMBBENCH_RECORDS",)
+"""Variables that a process takes over with each piece of work; the process it was forked from may be older."""
 T = TypeVar("T")
 
 
@@ -59,7 +61,7 @@ class Processes(Executor):
             place = self._free.popleft()
             self._signs.ticks[place] = self._signs.stop[place] = 0
             try:
-                future = pool.submit(watched, place, function, *arguments)
+                future = pool.submit(_surrounded, _environment(), place, function, *arguments)
             except (BrokenProcessPool, OSError, EOFError) as error:
                 self._free.append(place)
                 self._pool = None
@@ -98,6 +100,18 @@ class Processes(Executor):
         self._free.append(self._places.pop(future))
         if not future.cancelled() and isinstance(future.exception(), BrokenProcessPool) and self._pool is pool:
             self._pool = None
+
+
+def _environment() -> dict[str, str]:
+    return {name: os.environ[name] for name in INHERITED if name in os.environ}
+
+
+def _surrounded(environment: dict[str, str], place: int, function: Callable[..., T], *arguments: object) -> T:
+    """Call a function in the environment of the process that asks for it; in a worker."""
+    for name in INHERITED:
+        os.environ.pop(name, None)
+    os.environ.update(environment)
+    return watched(place, function, *arguments)
 
 
 def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> ProcessPoolExecutor:

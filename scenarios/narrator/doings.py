@@ -49,8 +49,8 @@ class Doings:
 
     def __init__(self, spec: Spec) -> None:
         self._library, self._dt_ms, self._diagnosers = spec.library, spec.dt_ms, spec.diagnosers
-        guard: Any = spec.guard.params
-        self._limits = {f"guard.{name}": getattr(guard, name) for name in ("travel_um", "rail_ms")}
+        limits = ("travel_um", "rail_ms")  # the guard of a record has none: it never trips
+        self._limits = {f"guard.{name}": value for name, value in spec.guard.params if name in limits}
 
     def sentence(self, entry: LogEntry, samples: NarratorSignals) -> Sentence | None:
         """Say an entry; nothing if it is of another kind."""

@@ -129,6 +129,17 @@ def assigned(columns: Columns, given: Mapping[str, str]) -> dict[str, str]:
             raise unknown("part", part, NAMES, "map")
         if name not in columns.names:
             raise unknown("column", name, columns.names, f"map.{part}")
+    found = by_usual_names(columns, given)
+    for part in NEEDED:
+        if part not in found:
+            there = ", ".join(one_line(short(name)) for name in columns.names[:20])
+            text = f"has no column for the {part}; its columns are {there}"
+            raise InputError(text, "record", f"name it: map {part}=COLUMN")
+    return found
+
+
+def by_usual_names(columns: Columns, given: Mapping[str, str]) -> dict[str, str]:
+    """Return the given columns, and for each other part the column with a usual name, if there is one."""
     bare = {split_unit(name)[0].strip().lower(): name for name in reversed(columns.names)}
     found = dict(given)
     for part, usual in NAMES.items():
@@ -136,11 +147,6 @@ def assigned(columns: Columns, given: Mapping[str, str]) -> dict[str, str]:
         match = next((bare[name] for name in usual if name in bare and bare[name] not in taken), None)
         if part not in found and match is not None:
             found[part] = match
-    for part in NEEDED:
-        if part not in found:
-            there = ", ".join(one_line(short(name)) for name in columns.names[:20])
-            text = f"has no column for the {part}; its columns are {there}"
-            raise InputError(text, "record", f"name it: map {part}=COLUMN")
     return found
 
 

@@ -17,11 +17,14 @@ from server.api.router import Router
 from server.bench.commands import DEFAULT_SCALE, MAX_SCALE, MIN_SCALE, Command
 from server.bench.description import document_of
 from server.bench.events import KEPT, Event
+from server.bench.record_work import record_document
 from server.bench.status import Bench
 from server.bench.view import View
 from server.classroom.hiding import HINT, blind_of
 from server.errors import ApiError
 from server.paging import ListPage
+from server.security.person import Person
+from server.service import Service
 
 MAX_NAME = 80
 
@@ -68,6 +71,13 @@ class NewBench(StrictBody):
         if self.quiet_lead and self.time_scale is None:
             raise ValueError("quiet_lead needs a time_scale to continue at")
         return self
+
+
+class NewBenchHere(NewBench):
+    """A new bench, which may play a record of this server, and have a device that a record calibrated."""
+
+    record: str = Field("", max_length=40, description="Id of the record that plays in place of its plant; empty: none")
+    device: str = Field("", max_length=40, description="Id of a measured device; empty: the scenario's own")
 
 
 class BenchList(BaseModel):
@@ -134,10 +144,11 @@ class Variant(StrictBody):
 
 
 @router.post("", status_code=201, dependencies=[RateLimited])
-async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
+async def create_bench(body: NewBenchHere, service: ServiceDep, person: PersonDep, response: Response) -> Bench:
     """Make a bench and start it; the new bench of a student replaces the earlier one."""
     if person.role == "watcher":
         raise ApiError(403, "forbidden", "a link to watch opens one bench")
+    body = await _with_record(body, service, person)
     await service.benches.check(body.scenario, body.set)
     if person.role == "student":
         blind = blind_of(await service.student_benches.get(person))  # it may be on its way back
@@ -150,6 +161,19 @@ async def create_bench(body: NewBench, service: ServiceDep, person: PersonDep, r
         session.keep = body.keep
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.views.opened(session, person)
+
+
+async def _with_record(body: NewBenchHere, service: Service, person: Person) -> NewBenchHere:
+    """Put the record and the measured device of a request into its scenario and its values."""
+    changes: dict[str, Any] = {}
+    if body.device:
+        device = await service.measured_devices.get(body.device)
+        changes["set"] = {**device.for_bench(plays_record=bool(body.record)), **body.set}
+    if body.record:
+        record = await service.measured_records.get(body.record, None if person.is_teacher else person.id)
+        units = service.units.beside({})
+        changes["scenario"] = await service.computing.call(record_document, body.scenario, units, record.key)
+    return body.model_copy(update=changes)
 
 
 @router.get("")

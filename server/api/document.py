@@ -47,6 +47,8 @@ PARAMETERS = {
     "member_id": "Id of a student",
     "name": "Id of a diagnoser or a read-out; on a twin: <twin>:<id>",
     "number": "Number of the cue, from 1",
+    "device_id": "Id of a measured device",
+    "record_id": "Id of a record of a device",
     "recording_id": "Id of a recording",
     "run_id": "Id of a run",
     "scenario_id": "Id of a scenario of the library",

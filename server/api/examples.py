@@ -77,6 +77,12 @@ EXAMPLES: dict[str, tuple[Any, Any]] = {
         {"other": "7d1c0c3a9f0e"},
         {"other": "7d1c0c3a9f0e", "absolute": 1e-6, "tolerances": {"plant.displacement": 1e-3}, "align": "start"},
     ),
+    "calibrate_record": ({"first": 0, "end": 2000}, {"scenario": "ch5-seven-step", "first": 500, "end": 4500}),
+    "diagnose_record": ({"end": 2000}, {"scenario": "ch5-seven-step", "first": 500, "end": 4500}),
+    "save_measured_device": (
+        {"name": "wafer 7", "record": "7d1c0c3a9f0e", "end": 2000},
+        {"name": "wafer 8", "record": "7d1c0c3a9f0e", "scenario": "ch5-seven-step", "first": 500, "end": 4500},
+    ),
     "start_run": (
         {"scenario": "ch5-seven-step", "seed": 7},
         {"scenario": "ch3-mrac-spring-x2", "set": {"controller.adaptation_gain": 30.5}, "seeds": "1:20"},

@@ -16,6 +16,7 @@ TAGS = {
     "snapshots": "Kept moments of a bench",
     "parameter sets": "Named values of parameters, kept for other benches",
     "recordings": "Recorded spans of a bench: their traces, their replay and their comparison",
+    "records": "Records of real devices: their calibration, their diagnosis, and the devices they calibrated",
     "trace": "Samples of a live bench",
     "runs": "Headless runs: their summaries, traces and reports",
     "sweeps": "Campaigns: a scenario at many points with many seeds",

@@ -89,7 +89,7 @@ def prepare(
     compiled: bool = True,
 ) -> tuple[Scenario, Board]:
     """Read a scenario, write values over it, give it those units of this server that are for it, wire its board."""
-    document = _document(source)
+    document = read_document(source)
     has_table = isinstance(document.get("units", {}), dict)  # else it is refused below
     if units and has_table and (given := units({**document, "set": values})):
         check_admitted(document)
@@ -148,7 +148,7 @@ def read_scenario(source: str | dict[str, Any]) -> Scenario:
     return get(source) if is_id(source) else Scenario.load(source)
 
 
-def _document(source: str | dict[str, Any]) -> Document:
+def read_document(source: str | dict[str, Any]) -> Document:
     """Return a scenario as it was written."""
     if isinstance(source, dict):
         return source

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from core.board.board import Board
 from core.board.document import SUPERVISOR
 from core.board.packages import TABLE, carried
-from core.board.spec import Section
+from core.board.spec import Section, Spec
 from core.board.words import describe
 from core.cards import card
 from core.device.two_axis import TwoAxis
@@ -24,6 +24,7 @@ from server.bench.status import (
     BenchStatus,
     DiagnoserInfo,
     Pending,
+    PlayedRecord,
     State,
     SupervisorAct,
     SupervisorStatus,
@@ -119,6 +120,15 @@ def _supervisor(board: Board) -> SupervisorStatus:
     )
 
 
+def _played(spec: Spec) -> PlayedRecord | None:
+    """Describe the record that a bench plays."""
+    if spec.record is None:
+        return None
+    plant: Any = spec.plant.params
+    labels = [] if spec.record.label is None else list(spec.record.hypotheses)
+    return PlayedRecord(key=plant.record, samples=spec.record.samples, labels=labels)
+
+
 def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Bench:
     """Describe a bench in full.
 
@@ -161,6 +171,7 @@ def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Be
         parameters=document_now(bench),
         view3d=view3d,
         replay_of=bench.replay_of or None,
+        record=None if bench.replay_of else _played(spec),
         recorded_scale=bench.recorded_scale,
         opened=bench.opened,
         keep=bench.keep,

@@ -182,6 +182,14 @@ class HiddenQuestion(BaseModel):
     by_tick: int = Field(description="The fault has come by then, if there is one")
 
 
+class PlayedRecord(BaseModel):
+    """A record of a real device that a bench plays: nothing can act on it."""
+
+    key: str
+    samples: int
+    labels: list[str] = Field(description="Names of its labels; empty: the truth is not known, and so no score")
+
+
 class DiagnoserInfo(BaseModel):
     """The hypotheses of a diagnoser, in the order of its indices."""
 
@@ -212,6 +220,7 @@ class Bench(BenchStatus):
     parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
+    record: PlayedRecord | None = Field(None, description="The record of a device that plays in place of its plant")
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
     opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
     blind: HiddenQuestion | None = Field(

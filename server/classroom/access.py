@@ -95,6 +95,12 @@ _DOORS = {
         POST {API}/qr  *
     """,
     Need.MEMBER: f"""
+        POST GET {API}/records
+        POST {API}/records/columns
+        GET DELETE {API}/records/{{record_id}}
+        POST {API}/records/{{record_id}}/calibration
+        POST {API}/records/{{record_id}}/diagnosis
+        GET {API}/measured-devices
         POST {API}/scenarios/check
         GET POST {API}/units
         GET {API}/units/{{name}}
@@ -155,6 +161,8 @@ _DOORS = {
         DELETE {API}/recordings/{{recording_id}}
         POST {API}/recordings/{{recording_id}}/replay
         POST {API}/recordings/{{recording_id}}/compare
+        POST {API}/measured-devices
+        DELETE {API}/measured-devices/{{device_id}}
         PUT DELETE {API}/units/{{name}}
         POST GET {API}/runs
         POST {API}/runs/remove

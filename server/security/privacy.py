@@ -9,7 +9,7 @@ from pathlib import Path
 
 log = logging.getLogger(__name__)
 
-KEPT = ("token*", "lti-key.pem*", "combbench.sqlite3*", "recordings", "runs", "units")
+KEPT = ("token*", "lti-key.pem*", "combbench.sqlite3*", "recordings", "records", "runs", "units")
 OTHERS = 0o077
 
 

@@ -21,7 +21,7 @@ from server.store.recording import free_bytes
 log = logging.getLogger(__name__)
 
 EVERY_S = 3600.0
-FOLDERS = ("recordings", "runs", "sweeps")
+FOLDERS = ("recordings", "records", "runs", "sweeps")
 
 
 class Keeping:

@@ -102,6 +102,43 @@ class RecordingRow(Base):
     reason: Mapped[str] = mapped_column(String(400), default="")
 
 
+class RecordRow(Base):
+    """A record of a device; rows with the same numbers share a file, which has their key as its name.
+
+    Attributes
+    ----------
+    owner : str
+        Id of the student who brought it; empty: the teacher.
+    about : dict
+        What its file said: columns, notes, labels, ranges.
+    """
+
+    __tablename__ = "records"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    key: Mapped[str] = mapped_column(String(64), index=True)
+    name: Mapped[str] = mapped_column(String(200))
+    owner: Mapped[str] = mapped_column(String(32), index=True)
+    rate_khz: Mapped[float] = mapped_column(Float)
+    samples: Mapped[int] = mapped_column(BigInteger)
+    bytes: Mapped[int] = mapped_column(BigInteger)
+    about: Mapped[dict[str, Any]]
+    created: Mapped[datetime] = mapped_column(default=now, index=True)
+
+
+class MeasuredDeviceRow(Base):
+    """A device that a record calibrated."""
+
+    __tablename__ = "measured_devices"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), unique=True)
+    record_key: Mapped[str] = mapped_column(String(64))
+    values: Mapped[dict[str, Any]]
+    calibration: Mapped[dict[str, Any]]
+    created: Mapped[datetime] = mapped_column(default=now)
+
+
 class ParameterSetRow(Base):
     """A named set of parameters."""
 

@@ -43,6 +43,7 @@ WHOLE = {
         (
             "get_scenario", "get_bench", "region", "plants", "flops", "explain_sample", "map_bench_aliases",
             "get_readout", "list_printed", "list_claims", "compare_parameter_sets", "get_recording", "get_run",
+            "get_record_plot",
             "compare_finished_runs", "compare_traces", "get_sweep_distribution", "get_sweep_picture", "get_benchmark",
             "get_lecture", "get_class", "get_blind", "get_vote", "get_sheet",
         ),

@@ -49,12 +49,13 @@ def test_what_is_refused_for_want_of_the_database_has_not_happened(
     world: World, door: tuple[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     who, ids, body = CASES[door](world)
-    method, path = door[0], door[1].format(**ids)
+    method, path = door[0], door[1].format(**ids) + ids.get("?", "")
+    sent = {} if body is None else {"content" if isinstance(body, bytes) else "json": body}
     injector = Injector(monkeypatch)
     for calls in range(40):
         before = world.state()
         injector.arm(calls)
-        answer = who.ask(method, path, **({"json": body} if body is not None else {}))
+        answer = who.ask(method, path, **sent)
         injector.is_armed = False
         if not injector.has_failed:
             assert answer.is_success, answer.text

@@ -76,7 +76,13 @@ class World:
     def end(self) -> None:
         for group in self.groups:
             self.live.http.delete(f"{API}/classes/{group['id']}")
-        for noun, key in (("votes", "votes"), ("links", "links"), ("recordings", "recordings")):
+        for noun, key in (
+            ("votes", "votes"),
+            ("links", "links"),
+            ("recordings", "recordings"),
+            ("measured-devices", "devices"),
+            ("records", "records"),
+        ):
             for one in self.live.http.get(f"{API}/{noun}").json()[key]:
                 self.live.http.delete(f"{API}/{noun}/{one['id']}")
         for one in self.live.http.get(f"{API}/parameter-sets").json()["sets"]:

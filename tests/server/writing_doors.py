@@ -7,6 +7,7 @@ from typing import Any
 
 from server.bench.commands import Step
 from server.classroom.access import API, BENCH, CLASS, DOORS
+from tests.scenarios.records.foreign import DT, draw
 from tests.server.classroom.group import Somebody
 from tests.server.conftest import Live
 from tests.server.world import ASKED, CASE, World
@@ -14,6 +15,14 @@ from tests.server.world import ASKED, CASE, World
 GAME = f"{API}/games/fool-the-bank"
 RUN = {"scenario": "first-look", "set": {"samples": 100}}
 SWEEP = {"sweep": {"schema": 1, "id": "two", "scenario": "first-look", "set": {"samples": 100}, "seeds": "1:3"}}
+
+_HEALTHY = draw(1, samples=2200)
+RECORD = (
+    "time_ms,drive,displacement\n".encode()
+    + "\n".join(
+        f"{DT * i},{u},{y}" for i, (u, y) in enumerate(zip(_HEALTHY.drive, _HEALTHY.displacement, strict=True))
+    ).encode()
+)
 
 Asked = tuple[Somebody, dict[str, str], Any]
 CASES: dict[tuple[str, str], Callable[[World], Asked]] = {}
@@ -121,6 +130,36 @@ of_teacher("POST", f"{CLASS}/start", {}, class_id=with_two)
 of_teacher("DELETE", f"{CLASS}/shown", class_id=shown)
 of_teacher("PUT", f"{CLASS}/layout", {"name": "lab"}, class_id=a_class)
 of_teacher("POST", f"{CLASS}/blind", {"scenario": "first-look"}, class_id=with_two)
+
+
+def a_record(w: World) -> str:
+    return str(w.live.http.post(f"{API}/records", content=RECORD, params={"name": "one.csv"}).json()["id"])
+
+
+@case("POST", f"{API}/records")
+def _(w: World) -> Asked:
+    return w.teacher, {"?": "?name=one.csv"}, RECORD
+
+
+@case("POST", f"{API}/records/columns")
+def _(w: World) -> Asked:
+    return w.teacher, {"?": "?name=one.csv"}, RECORD
+
+
+of_teacher("DELETE", f"{API}/records/{{record_id}}", record_id=a_record)
+of_teacher("POST", f"{API}/records/{{record_id}}/calibration", {"end": 2000}, record_id=a_record)
+of_teacher("POST", f"{API}/records/{{record_id}}/diagnosis", {"end": 2000}, record_id=a_record)
+
+
+@case("POST", f"{API}/measured-devices")
+def _(w: World) -> Asked:
+    return w.teacher, {}, {"name": "mine", "record": a_record(w), "end": 2000}
+
+
+@case("DELETE", f"{API}/measured-devices/{{device_id}}")
+def _(w: World) -> Asked:
+    body = {"name": "another", "record": a_record(w), "end": 2000}
+    return w.teacher, {"device_id": str(w.ask("POST", f"{API}/measured-devices", **body)["id"])}, None
 
 
 @case("POST", f"{BENCH}/recordings/{{recording_id}}/stop")

@@ -8,13 +8,16 @@ import type {
   Design,
   ExcitationSource,
   ForkFrom,
+  HealthyStretch,
   LinkWords,
   MapSource,
-  NewBench,
+  NewBenchHere,
   NewLink,
+  NewMeasuredDevice,
   NewRun,
   NewThreshold,
   PointQuery,
+  RecordReading,
   RunFilter,
   SweptSine,
   Trace,
@@ -28,6 +31,12 @@ const parameterSet = (set_id: string) => at({ set_id });
 const link = (link_id: string) => at({ link_id });
 const threshold = (threshold_id: string) => at({ threshold_id });
 const sweep = (sweep_id: string) => at({ sweep_id });
+/** A file as the body of a request. */
+const content = (file: File) => ({
+  body: "",
+  bodySerializer: () => file,
+  headers: { "Content-Type": "application/octet-stream" },
+});
 const command = (id: string, body: Command) =>
   data(client.POST("/api/v1/benches/{bench_id}/commands", { ...bench(id), body }));
 
@@ -118,9 +127,24 @@ export const api = {
     ),
   compare: (id: string, body: CompareWith) =>
     data(client.POST("/api/v1/recordings/{recording_id}/compare", { ...recording(id), body })),
+  /** The files of records come and go as they are. */
+  bringRecord: (file: File, query: RecordReading) =>
+    data(client.POST("/api/v1/records", { params: { query: { ...query, name: file.name } }, ...content(file) })),
+  recordColumns: (file: File) =>
+    data(client.POST("/api/v1/records/columns", { params: { query: { name: file.name } }, ...content(file) })),
+  deviceRecords: () => every("records", (query) => client.GET("/api/v1/records", { params: { query } })),
+  deviceRecord: (record_id: string, query: { start?: number; end?: number; points?: number } = {}) =>
+    data(client.GET("/api/v1/records/{record_id}", at({ record_id }, query))),
+  removeDeviceRecord: (record_id: string) => data(client.DELETE("/api/v1/records/{record_id}", at({ record_id }))),
+  calibrateRecord: (record_id: string, body: HealthyStretch) =>
+    data(client.POST("/api/v1/records/{record_id}/calibration", { ...at({ record_id }), body })),
+  diagnoseRecord: (record_id: string, body: HealthyStretch) =>
+    data(client.POST("/api/v1/records/{record_id}/diagnosis", { ...at({ record_id }), body })),
+  saveMeasuredDevice: (body: NewMeasuredDevice) => data(client.POST("/api/v1/measured-devices", { body })),
+  measuredDevices: () => every("devices", (query) => client.GET("/api/v1/measured-devices", { params: { query } })),
   benches: () => every("benches", (query) => client.GET("/api/v1/benches", { params: { query } })),
   bench: (id: string) => data(client.GET("/api/v1/benches/{bench_id}", bench(id))),
-  createBench: (body: NewBench) => data(client.POST("/api/v1/benches", { body })),
+  createBench: (body: NewBenchHere) => data(client.POST("/api/v1/benches", { body })),
   /** Do something to a bench that is not on the page. */
   command,
   /** Let a bench that has just been made run as fast as it goes. */

@@ -1001,6 +1001,158 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/records": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Records
+         * @description List the records, newest first; a student sees the own records.
+         */
+        get: operations["list_records"];
+        put?: never;
+        /**
+         * Bring Record
+         * @description Keep the record in a file, which is the body: CSV, Parquet, MAT, NetCDF or HDF5.
+         */
+        post: operations["bring_record"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/columns": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read Columns
+         * @description Return the columns of a file, to choose from; of a text its first lines are enough. Nothing is kept.
+         */
+        post: operations["read_columns"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/{record_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Record Plot
+         * @description Describe a record, with minimum and maximum of its columns over a range of samples.
+         */
+        get: operations["get_record_plot"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Record
+         * @description Delete a record that no live bench plays; a student may delete the own records.
+         */
+        delete: operations["delete_record"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/{record_id}/calibration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Calibrate Record
+         * @description Fit mass, damping, stiffness, offset, delay and noise to half of a healthy stretch; test by the other half.
+         */
+        post: operations["calibrate_record"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/{record_id}/diagnosis": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Diagnose Record
+         * @description Calibrate by a healthy stretch, and let the banks of a bench diagnose the whole record.
+         */
+        post: operations["diagnose_record"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/measured-devices": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Measured Devices
+         * @description List the measured devices by name.
+         */
+        get: operations["list_measured_devices"];
+        put?: never;
+        /**
+         * Save Measured Device
+         * @description Calibrate a record, and keep its device for other benches.
+         */
+        post: operations["save_measured_device"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/measured-devices/{device_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Delete Measured Device
+         * @description Forget a measured device; benches that have it keep it.
+         */
+        delete: operations["delete_measured_device"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/trace": {
         parameters: {
             query?: never;
@@ -3308,6 +3460,33 @@ export interface components {
             at_ms: number | null;
         };
         /**
+         * BankVerdicts
+         * @description The verdicts of a bank over a record.
+         */
+        BankVerdicts: {
+            /** Name */
+            name: string;
+            /**
+             * Healthy
+             * @description Its hypothesis of no fault
+             */
+            healthy: string;
+            /**
+             * Shares
+             * @description Share of the samples of each verdict, the largest first
+             */
+            shares: {
+                [key: string]: number;
+            };
+            /** Verdicts */
+            verdicts: components["schemas"]["VerdictStretch"][];
+            /**
+             * Left Out
+             * @description Stretches beyond those listed
+             */
+            left_out: number;
+        };
+        /**
          * Begin
          * @description A bench of a game to begin.
          */
@@ -3516,6 +3695,8 @@ export interface components {
              * @description The recording it plays; such a bench takes no changes
              */
             replay_of?: string | null;
+            /** @description The record of a device that plays in place of its plant */
+            record?: components["schemas"]["PlayedRecord"] | null;
             /**
              * Recorded Scale
              * @description Device seconds per wall second it was recorded at
@@ -4412,6 +4593,24 @@ export interface components {
             geometry: components["schemas"]["ParameterCard"][];
         };
         /**
+         * DiagnosedRecord
+         * @description The calibration of a record, and the verdicts of all banks; none after a refusal.
+         */
+        DiagnosedRecord: {
+            calibration: components["schemas"]["RecordCalibration"];
+            /** Refusal */
+            refusal: string;
+            /** Banks */
+            banks: components["schemas"]["BankVerdicts"][];
+            /**
+             * Figures
+             * @description Figures with the score, of a record with labels
+             */
+            figures: {
+                [key: string]: number | null;
+            };
+        };
+        /**
          * DiagnoserInfo
          * @description The hypotheses of a diagnoser, in the order of its indices.
          */
@@ -4597,6 +4796,20 @@ export interface components {
             error: number;
             /** Cases */
             cases: number;
+        };
+        /**
+         * Estimated
+         * @description A number with its standard error and its 95 % interval.
+         */
+        Estimated: {
+            /** Value */
+            value: number;
+            /** Error */
+            error: number;
+            /** Low */
+            low: number;
+            /** High */
+            high: number;
         };
         /**
          * Evaluation
@@ -4951,6 +5164,49 @@ export interface components {
             differences: (number | null)[];
         };
         /**
+         * FileColumn
+         * @description A column of a file.
+         */
+        FileColumn: {
+            /** Name */
+            name: string;
+            /** Unit */
+            unit: string;
+            /** Is Number */
+            is_number: boolean;
+        };
+        /**
+         * FileColumns
+         * @description The columns of a file, and the column of each part that has a usual name.
+         */
+        FileColumns: {
+            /** Columns */
+            columns: components["schemas"]["FileColumn"][];
+            /**
+             * Found
+             * @description Column of time, drive, displacement and label, where it was found
+             */
+            found: {
+                [key: string]: string;
+            };
+        };
+        /**
+         * FitCheck
+         * @description A reason against the fit, which was looked for: its figure, its limit, and the sentence where it was found.
+         */
+        FitCheck: {
+            /** Name */
+            name: string;
+            /** Value */
+            value: number;
+            /** Limit */
+            limit: number;
+            /** Ok */
+            ok: boolean;
+            /** Sentence */
+            sentence: string;
+        };
+        /**
          * FittedCurve
          * @description The response of the device found, and the response of the nominal device.
          */
@@ -5272,6 +5528,29 @@ export interface components {
             };
         };
         /**
+         * HealthyStretch
+         * @description The samples of a record that are healthy, and the bench whose nominal device they are compared with.
+         */
+        HealthyStretch: {
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             * @default first-look
+             */
+            scenario?: string | components["schemas"]["Scenario"];
+            /**
+             * First
+             * @description First sample
+             * @default 0
+             */
+            first?: number;
+            /**
+             * End
+             * @description The sample after the last; null: a quarter of the record
+             */
+            end?: number | null;
+        };
+        /**
          * HiddenQuestion
          * @description The words people get about a hidden fault, or about the game that is played.
          */
@@ -5552,6 +5831,67 @@ export interface components {
             session: string;
             /** Bench */
             bench: string;
+        };
+        /**
+         * KeptRecord
+         * @description A record of a device as the API shows it.
+         */
+        KeptRecord: {
+            /** Id */
+            id: string;
+            /**
+             * Key
+             * @description SHA-256 of its numbers, by which a scenario names it
+             */
+            key: string;
+            /**
+             * Name
+             * @description Name of its file
+             */
+            name: string;
+            /** Rate Khz */
+            rate_khz: number;
+            /** Samples */
+            samples: number;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Columns
+             * @description The column of the file for each part
+             */
+            columns: {
+                [key: string]: string;
+            };
+            /**
+             * Notes
+             * @description Sentences about lost samples and irregular times
+             */
+            notes: string[];
+            /**
+             * Labels
+             * @description Names of its labels; empty: it has none, and so no score
+             */
+            labels: string[];
+            /**
+             * Lost
+             * @description Samples without a displacement
+             */
+            lost: number;
+            /**
+             * Drive V
+             * @description Least and largest voltage
+             */
+            drive_v: number[];
+            /**
+             * Displacement Um
+             * @description Least and largest displacement
+             */
+            displacement_um: number[];
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
         };
         /**
          * Kind
@@ -6023,6 +6363,41 @@ export interface components {
             vote?: components["schemas"]["OpenVote"] | null;
         };
         /**
+         * MeasuredDevice
+         * @description A device that a record calibrated.
+         */
+        MeasuredDevice: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /**
+             * Record Key
+             * @description Key of the record that calibrated it
+             */
+            record_key: string;
+            /**
+             * Values
+             * @description Values of a bench by dotted path
+             */
+            values: {
+                [key: string]: number;
+            };
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+        };
+        /**
+         * MeasuredDeviceList
+         * @description Measured devices by name.
+         */
+        MeasuredDeviceList: {
+            /** Devices */
+            devices: components["schemas"]["MeasuredDevice"][];
+        };
+        /**
          * MeasuredPlant
          * @description CPU time of one tick of the whole bench with this plant; null when it cannot have it.
          */
@@ -6231,6 +6606,66 @@ export interface components {
             quiet_lead?: boolean;
         };
         /**
+         * NewBenchHere
+         * @description A new bench, which may play a record of this server, and have a device that a record calibrated.
+         */
+        NewBenchHere: {
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             */
+            scenario: string | components["schemas"]["Scenario"];
+            /**
+             * Set
+             * @description Values by dotted path; they replace values of the scenario
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Seed
+             * @description Null: the seed of the scenario
+             */
+            seed?: number | null;
+            /**
+             * Paused
+             * @description Start paused
+             * @default false
+             */
+            paused?: boolean;
+            /**
+             * Keep
+             * @description Never close the bench for being unused; for the teacher alone
+             * @default false
+             */
+            keep?: boolean;
+            /**
+             * Time Scale
+             * @description Device seconds per wall second; null: as fast as possible; left out: usual for the device
+             * @default 0.002
+             */
+            time_scale?: number | null;
+            /**
+             * Quiet Lead
+             * @description Run as fast as possible until two seconds of wall time before the first command of the scenario that waits for a tick, and at the time scale from there on. A reset begins this again, and a time_scale command ends it. The bits stay the same
+             * @default false
+             */
+            quiet_lead?: boolean;
+            /**
+             * Record
+             * @description Id of the record that plays in place of its plant; empty: none
+             * @default
+             */
+            record?: string;
+            /**
+             * Device
+             * @description Id of a measured device; empty: the scenario's own
+             * @default
+             */
+            device?: string;
+        };
+        /**
          * NewClass
          * @description A class, and the start of the benches of its students.
          */
@@ -6311,6 +6746,39 @@ export interface components {
              * @default
              */
             note?: string;
+        };
+        /**
+         * NewMeasuredDevice
+         * @description A record, its healthy stretch, and the name of the device.
+         */
+        NewMeasuredDevice: {
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             * @default first-look
+             */
+            scenario?: string | components["schemas"]["Scenario"];
+            /**
+             * First
+             * @description First sample
+             * @default 0
+             */
+            first?: number;
+            /**
+             * End
+             * @description The sample after the last; null: a quarter of the record
+             */
+            end?: number | null;
+            /**
+             * Name
+             * @description Name, which no other measured device may have
+             */
+            name: string;
+            /**
+             * Record
+             * @description Id of the record
+             */
+            record: string;
         };
         /**
          * NewRun
@@ -6845,6 +7313,21 @@ export interface components {
             seed: number;
         };
         /**
+         * PlayedRecord
+         * @description A record of a real device that a bench plays: nothing can act on it.
+         */
+        PlayedRecord: {
+            /** Key */
+            key: string;
+            /** Samples */
+            samples: number;
+            /**
+             * Labels
+             * @description Names of its labels; empty: the truth is not known, and so no score
+             */
+            labels: string[];
+        };
+        /**
          * PointTally
          * @description All runs of a point.
          */
@@ -7064,6 +7547,130 @@ export interface components {
              * @description Longest averaging time of the fit; 0 without a fit
              */
             to_s: number;
+        };
+        /**
+         * RecordCalibration
+         * @description The device behind a healthy stretch; a refusal says why it does not fit.
+         */
+        RecordCalibration: {
+            /** @description Over nominal, at the nominal force */
+            mass: components["schemas"]["Estimated"];
+            damping: components["schemas"]["Estimated"];
+            stiffness: components["schemas"]["Estimated"];
+            offset_um: components["schemas"]["Estimated"];
+            delay_samples: components["schemas"]["Estimated"];
+            /** Noise Um */
+            noise_um: number;
+            /**
+             * Quantum Um
+             * @description Step of the converter; 0: none is seen
+             */
+            quantum_um: number;
+            /** Samples */
+            samples: number;
+            /** Checks */
+            checks: components["schemas"]["FitCheck"][];
+            /**
+             * Refusal
+             * @description Why the record does not fit; empty: it does
+             */
+            refusal: string;
+            /**
+             * Values
+             * @description Values by dotted path that give a bench this device
+             */
+            values: {
+                [key: string]: number;
+            };
+        };
+        /**
+         * RecordDetail
+         * @description A record, with its columns thinned for a plot.
+         */
+        RecordDetail: {
+            /** Id */
+            id: string;
+            /**
+             * Key
+             * @description SHA-256 of its numbers, by which a scenario names it
+             */
+            key: string;
+            /**
+             * Name
+             * @description Name of its file
+             */
+            name: string;
+            /** Rate Khz */
+            rate_khz: number;
+            /** Samples */
+            samples: number;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Columns
+             * @description The column of the file for each part
+             */
+            columns: {
+                [key: string]: string;
+            };
+            /**
+             * Notes
+             * @description Sentences about lost samples and irregular times
+             */
+            notes: string[];
+            /**
+             * Labels
+             * @description Names of its labels; empty: it has none, and so no score
+             */
+            labels: string[];
+            /**
+             * Lost
+             * @description Samples without a displacement
+             */
+            lost: number;
+            /**
+             * Drive V
+             * @description Least and largest voltage
+             */
+            drive_v: number[];
+            /**
+             * Displacement Um
+             * @description Least and largest displacement
+             */
+            displacement_um: number[];
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            plot: components["schemas"]["RecordPlot"];
+        };
+        /**
+         * RecordList
+         * @description Records, newest first.
+         */
+        RecordList: {
+            /** Records */
+            records: components["schemas"]["KeptRecord"][];
+        };
+        /**
+         * RecordPlot
+         * @description Extremes of the columns over stretches of samples; null: all samples of a stretch are lost.
+         */
+        RecordPlot: {
+            /**
+             * Sample
+             * @description First sample of each stretch
+             */
+            sample: number[];
+            /** Drive Low */
+            drive_low: (number | null)[];
+            /** Drive High */
+            drive_high: (number | null)[];
+            /** Displacement Low */
+            displacement_low: (number | null)[];
+            /** Displacement High */
+            displacement_high: (number | null)[];
         };
         /**
          * Recording
@@ -9114,6 +9721,20 @@ export interface components {
                     [key: string]: number;
                 };
             };
+        };
+        /**
+         * VerdictStretch
+         * @description Samples with one verdict: a hypothesis, `unsure` or `unexplained`.
+         */
+        VerdictStretch: {
+            /** First */
+            first: number;
+            /** End */
+            end: number;
+            /** Verdict */
+            verdict: string;
+            /** Probability */
+            probability: number;
         };
         /**
          * Vote
@@ -16028,6 +16649,7 @@ export type Attempt = components['schemas']['Attempt'];
 export type AuditEntry = components['schemas']['AuditEntry'];
 export type AuditList = components['schemas']['AuditList'];
 export type Ballot = components['schemas']['Ballot'];
+export type BankVerdicts = components['schemas']['BankVerdicts'];
 export type Begin = components['schemas']['Begin'];
 export type Bench = components['schemas']['Bench'];
 export type BenchCaptures = components['schemas']['BenchCaptures'];
@@ -16068,6 +16690,7 @@ export type DefinitenessReport = components['schemas']['DefinitenessReport'];
 export type Design = components['schemas']['Design'];
 export type DeviceCard = components['schemas']['DeviceCard'];
 export type DeviceList = components['schemas']['DeviceList'];
+export type DiagnosedRecord = components['schemas']['DiagnosedRecord'];
 export type DiagnoserInfo = components['schemas']['DiagnoserInfo'];
 export type DiagnosisTally = components['schemas']['DiagnosisTally'];
 export type Difference = components['schemas']['Difference'];
@@ -16081,6 +16704,7 @@ export type Ended = components['schemas']['Ended'];
 export type EquationCard = components['schemas']['EquationCard'];
 export type ErrorBody = components['schemas']['ErrorBody'];
 export type Estimate = components['schemas']['Estimate'];
+export type Estimated = components['schemas']['Estimated'];
 export type Evaluation = components['schemas']['Evaluation'];
 export type Event = components['schemas']['Event'];
 export type EventList = components['schemas']['EventList'];
@@ -16096,6 +16720,9 @@ export type FastForward = components['schemas']['FastForward'];
 export type Figure = components['schemas']['Figure'];
 export type FigureProgress = components['schemas']['FigureProgress'];
 export type FigureRow = components['schemas']['FigureRow'];
+export type FileColumn = components['schemas']['FileColumn'];
+export type FileColumns = components['schemas']['FileColumns'];
+export type FitCheck = components['schemas']['FitCheck'];
 export type FittedCurve = components['schemas']['FittedCurve'];
 export type FoldPoint = components['schemas']['FoldPoint'];
 export type ForAll = components['schemas']['ForAll'];
@@ -16112,6 +16739,7 @@ export type Hand = components['schemas']['Hand'];
 export type Hands = components['schemas']['Hands'];
 export type HealFaults = components['schemas']['HealFaults'];
 export type Health = components['schemas']['Health'];
+export type HealthyStretch = components['schemas']['HealthyStretch'];
 export type HiddenQuestion = components['schemas']['HiddenQuestion'];
 export type Hide = components['schemas']['Hide'];
 export type HideForAll = components['schemas']['HideForAll'];
@@ -16123,6 +16751,7 @@ export type Inject = components['schemas']['Inject'];
 export type InstabilityMap = components['schemas']['InstabilityMap'];
 export type Join = components['schemas']['Join'];
 export type Joined = components['schemas']['Joined'];
+export type KeptRecord = components['schemas']['KeptRecord'];
 export type Kind = components['schemas']['Kind'];
 export type Knob = components['schemas']['Knob'];
 export type LectureCard = components['schemas']['LectureCard'];
@@ -16142,6 +16771,8 @@ export type Mark = components['schemas']['Mark'];
 export type MarkList = components['schemas']['MarkList'];
 export type MatrixSource = components['schemas']['MatrixSource'];
 export type Me = components['schemas']['Me'];
+export type MeasuredDevice = components['schemas']['MeasuredDevice'];
+export type MeasuredDeviceList = components['schemas']['MeasuredDeviceList'];
 export type MeasuredPlant = components['schemas']['MeasuredPlant'];
 export type MeasuredPlants = components['schemas']['MeasuredPlants'];
 export type MeasuredTone = components['schemas']['MeasuredTone'];
@@ -16153,10 +16784,12 @@ export type NarrationList = components['schemas']['NarrationList'];
 export type NewAttempt = components['schemas']['NewAttempt'];
 export type NewBallot = components['schemas']['NewBallot'];
 export type NewBench = components['schemas']['NewBench'];
+export type NewBenchHere = components['schemas']['NewBenchHere'];
 export type NewClass = components['schemas']['NewClass'];
 export type NewLabel = components['schemas']['NewLabel'];
 export type NewLayout = components['schemas']['NewLayout'];
 export type NewLink = components['schemas']['NewLink'];
+export type NewMeasuredDevice = components['schemas']['NewMeasuredDevice'];
 export type NewRun = components['schemas']['NewRun'];
 export type NewSheet = components['schemas']['NewSheet'];
 export type NewSnapshot = components['schemas']['NewSnapshot'];
@@ -16182,6 +16815,7 @@ export type Pause = components['schemas']['Pause'];
 export type Pending = components['schemas']['Pending'];
 export type Play = components['schemas']['Play'];
 export type Played = components['schemas']['Played'];
+export type PlayedRecord = components['schemas']['PlayedRecord'];
 export type PointTally = components['schemas']['PointTally'];
 export type PortCard = components['schemas']['PortCard'];
 export type PositiveRealReport = components['schemas']['PositiveRealReport'];
@@ -16192,6 +16826,10 @@ export type QrText = components['schemas']['QrText'];
 export type Question = components['schemas']['Question'];
 export type Rank = components['schemas']['Rank'];
 export type RateReadout = components['schemas']['RateReadout'];
+export type RecordCalibration = components['schemas']['RecordCalibration'];
+export type RecordDetail = components['schemas']['RecordDetail'];
+export type RecordList = components['schemas']['RecordList'];
+export type RecordPlot = components['schemas']['RecordPlot'];
 export type Recording = components['schemas']['Recording'];
 export type RecordingDetail = components['schemas']['RecordingDetail'];
 export type RecordingList = components['schemas']['RecordingList'];
@@ -16285,6 +16923,7 @@ export type UnitText = components['schemas']['UnitText'];
 export type UnstableRegionMap = components['schemas']['UnstableRegionMap'];
 export type Variant = components['schemas']['Variant'];
 export type Verdict = components['schemas']['Verdict'];
+export type VerdictStretch = components['schemas']['VerdictStretch'];
 export type Vote = components['schemas']['Vote'];
 export type VoteList = components['schemas']['VoteList'];
 export type Wanted = components['schemas']['Wanted'];
@@ -16877,7 +17516,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NewBench"];
+                "application/json": components["schemas"]["NewBenchHere"];
             };
         };
         responses: {
@@ -18070,6 +18709,305 @@ export interface operations {
                     "application/vnd.apache.parquet": string;
                     "text/csv": string;
                 };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    list_records: {
+        parameters: {
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordList"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    bring_record: {
+        parameters: {
+            query: {
+                /** @description Name of the file; its ending says the format */
+                name: string;
+                /** @description Column of the times */
+                time?: string | null;
+                /** @description Column of the voltage */
+                drive?: string | null;
+                /** @description Column of the displacement */
+                displacement?: string | null;
+                /** @description Column of the known verdicts */
+                label?: string | null;
+                /** @description Samples for each ms, without times */
+                rate_khz?: number | null;
+                /** @description The voltage of a row acts from its sample on (next), or acted until it (last) */
+                pairing?: "next" | "last";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            /** @description The same record was here already */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptRecord"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeptRecord"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    read_columns: {
+        parameters: {
+            query: {
+                /** @description Name of the file */
+                name: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FileColumns"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    get_record_plot: {
+        parameters: {
+            query?: {
+                /** @description First sample of the plot */
+                start?: number;
+                /** @description The sample after the last; left out: the end */
+                end?: number | null;
+                /** @description Most stretches of the plot */
+                points?: number;
+            };
+            header?: never;
+            path: {
+                /** @description Id of a record of a device */
+                record_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordDetail"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    delete_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of a record of a device */
+                record_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    calibrate_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of a record of a device */
+                record_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HealthyStretch"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordCalibration"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    diagnose_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of a record of a device */
+                record_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HealthyStretch"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DiagnosedRecord"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    list_measured_devices: {
+        parameters: {
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MeasuredDeviceList"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    save_measured_device: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewMeasuredDevice"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MeasuredDevice"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    delete_measured_device: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of a measured device */
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             "4XX": components["responses"]["Refused"];
             "5XX": components["responses"]["Failed"];

@@ -46,6 +46,9 @@ export type SheetSection = Schemas["SectionView"];
 export type SheetStep = Schemas["StepView"];
 export type UnstableRegion = Schemas["UnstableRegionMap"];
 
+/** How the columns of a file with a record are to be read. */
+export type RecordReading = Omit<operations["bring_record"]["parameters"]["query"], "name">;
+
 /** Which runs and campaigns a list has. */
 export type RunFilter = NonNullable<operations["list_runs"]["parameters"]["query"]>;
 

@@ -7,6 +7,8 @@ import { resumeLecture, useLecture } from "../bench/lecture";
 import { benchInAddress, inAddress, openBench, showBench } from "../bench/open-bench";
 import { setPage, showAddress, useView } from "../bench/view-store";
 import { View3dHost } from "../panels/view3d/view3d-host";
+import { RecordDrop } from "../records/record-drop";
+import { RecordSheet } from "../records/record-sheet";
 import { useBench } from "../stream/bench-store";
 import { closeReason } from "../stream/close-reason";
 import { useStaleSince } from "../stream/freshness";
@@ -30,6 +32,7 @@ import { OpenedLine } from "./opened-line";
 import { isOffered, PAGES } from "./pages";
 import { Phone } from "./phone";
 import { Rail } from "./rail";
+import { RecordLine } from "./record-line";
 import { ReplayBar } from "./replay-bar";
 import { Search } from "./search/search";
 import { ShareSheet } from "./share-sheet";
@@ -101,6 +104,7 @@ export function App() {
       <Banner />
       <VoteCard />
       <OpenedLine />
+      {onBench && <RecordLine />}
       {failure?.code === "too_many_benches" ? (
         <FullServer
           onRetry={start}
@@ -131,6 +135,8 @@ export function App() {
       )}
       <KeySheet />
       <NewBench />
+      <RecordSheet />
+      <RecordDrop />
       <MineSheet />
       <ShareSheet />
       <LayoutSheet />

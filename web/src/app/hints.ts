@@ -20,7 +20,7 @@ export interface Hints {
   canHide: boolean;
 }
 
-type Shown = Pick<Bench, "axes" | "controllers" | "diagnosers" | "replay_of" | "signals">;
+type Shown = Pick<Bench, "axes" | "controllers" | "diagnosers" | "record" | "replay_of" | "signals">;
 
 const byHand = ({ actor }: LogEntry) => actor !== "scenario" && actor !== "board";
 const found = ({ kind, new: label }: LogEntry) => kind === "recognised" && label !== "healthy";
@@ -42,7 +42,7 @@ const namesMass = (diagnosers: Shown["diagnosers"], label: unknown) =>
 
 /** What to say of a bench; nothing where nothing can be tried. */
 export function hintsOf(bench: Shown): Hints | undefined {
-  if (bench.replay_of) return undefined;
+  if (bench.replay_of || bench.record) return undefined;
   const diagnosed = Object.keys(bench.diagnosers).length > 0;
   const axes = hasAxes(bench);
   if (!axes && !bench.signals.some((signal) => signal.name === "plant.displacement")) return undefined;

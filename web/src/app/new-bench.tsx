@@ -1,15 +1,16 @@
 import { Box, Button, NativeSelect, SimpleGrid, Switch, Text, TextInput } from "@mantine/core";
-import { IconClipboardList, IconFolderOpen, IconRulerMeasure } from "@tabler/icons-react";
+import { IconClipboardList, IconFolderOpen, IconRulerMeasure, IconWaveSine } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
 import { api } from "../api/api";
 import { useMay } from "../api/me";
-import type { Device, ScenarioSummary } from "../api/types";
+import type { Device, MeasuredDevice, ScenarioSummary } from "../api/types";
 import { openOwn } from "../bench/open-bench";
 import { showError } from "../bench/send";
 import { useBusy } from "../bench/use-busy";
 import { setPage, useView } from "../bench/view-store";
 import { byChapter } from "../gallery/chapters";
 import { showSheet } from "../panels/sheet/begin";
+import { useRecords } from "../records/open-record";
 import { EmptyState } from "../ui/empty-state";
 import styles from "./dialogs.module.css";
 import { SideSheet } from "./side-sheet";
@@ -47,6 +48,7 @@ const beginSheet = () => {
 function Gallery() {
   const [scenarios, setScenarios] = useState<ScenarioSummary[] | undefined>(undefined);
   const [devices, setDevices] = useState<Device[]>([]);
+  const [measured, setMeasured] = useState<MeasuredDevice[]>([]);
   const [device, setDevice] = useState("");
   const [query, setQuery] = useState("");
   const [paused, setPaused] = useState(false);
@@ -56,15 +58,18 @@ function Gallery() {
   useEffect(() => {
     api.scenarios().then(setScenarios, showError);
     api.devices().then(setDevices, showError);
+    api.measuredDevices().then(setMeasured, showError);
   }, []);
 
+  const own = measured.find(({ id }) => id === device);
   const start = (scenario: string) =>
     during(async () => {
       const bench = await api.createBench({
         scenario,
         paused,
         quiet_lead: true,
-        ...(device ? { set: { "device.id": device } } : {}),
+        ...(device && !own ? { set: { "device.id": device } } : {}),
+        ...(own ? { device: own.id } : {}),
       });
       openOwn(bench.id);
       useView.setState({ dialog: "none" });
@@ -74,7 +79,9 @@ function Gallery() {
   const chosen = devices.find((d) => d.id === device);
   const found = benches?.filter(
     (s) =>
-      `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()) && (!chosen || suits(chosen, s)),
+      `${s.id} ${s.title} ${s.summary}`.toLowerCase().includes(query.toLowerCase()) &&
+      (!chosen || suits(chosen, s)) &&
+      (!own || s.plant === "linear"),
   );
   const unsuited = chosen && benches ? benches.filter((s) => !suits(chosen, s)).length : 0;
   const fromDisk = "Open a scenario from disk";
@@ -84,6 +91,14 @@ function Gallery() {
       Icon: IconFolderOpen,
       words: teaches ? `${fromDisk}, or one of mine` : fromDisk,
       open: () => useView.setState({ dialog: "mine" }),
+    },
+    {
+      Icon: IconWaveSine,
+      words: "Open a record of your device",
+      open: () => {
+        useRecords.setState({ shown: undefined, file: undefined });
+        useView.setState({ dialog: "record" });
+      },
     },
     { Icon: IconClipboardList, words: "Begin a lab sheet", open: closeAnd(beginSheet) },
   ];
@@ -100,7 +115,11 @@ function Gallery() {
         <NativeSelect
           label="Device"
           value={device}
-          data={[{ value: "", label: "the scenario's own" }, ...devices.map((d) => ({ value: d.id, label: d.title }))]}
+          data={[
+            { value: "", label: "the scenario's own" },
+            ...devices.map((d) => ({ value: d.id, label: d.title })),
+            ...measured.map((d) => ({ value: d.id, label: `${d.name}, measured` })),
+          ]}
           onChange={(e) => setDevice(e.currentTarget.value)}
         />
         <Switch label="Start paused" checked={paused} onChange={(e) => setPaused(e.currentTarget.checked)} />

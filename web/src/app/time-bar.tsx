@@ -7,6 +7,7 @@ import { useBehind } from "../bench/behind";
 import { showPanel } from "../bench/dock";
 import { eventTone } from "../bench/flag-words";
 import { backToNow, lookBack } from "../bench/past";
+import { send } from "../bench/send";
 import { useBench } from "../stream/bench-store";
 import { currentEvents } from "../stream/event-log";
 import { staleWords, useStaleSince } from "../stream/freshness";
@@ -17,6 +18,8 @@ import { StripButton } from "./strip-button";
 import styles from "./time-bar.module.css";
 
 const MOST_MARKS = 200;
+/** The ticks of one command. */
+const MOST_STEP = 10_000;
 
 /** The time of the bench: dragged back, all panels show that moment, and another future can begin there. */
 export function TimeBar() {
@@ -38,7 +41,8 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
     const of = isPast ? (bench.origin?.bench ?? "") : bench.id;
     setNewest((n) => ({ of, tick: isPast ? Math.max(n.of === of ? n.tick : 0, bench.tick) : bench.tick }));
   }, [bench, isPast]);
-  const end = Math.max(isPast ? newest.tick : bench.tick, first + 1);
+  const now = Math.max(isPast ? newest.tick : bench.tick, first + 1);
+  const end = Math.max(now, bench.record?.samples ?? 0); // a record has a future to go to
   const shown = Math.min(held ?? bench.travel?.tick ?? bench.tick, end);
   const place = (tick: number) => `${((tick - first) / (end - first)) * 100}%`;
   const marks = (isPast ? events : currentEvents(events)).filter(
@@ -46,8 +50,8 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
   );
   const go = (tick: number) => {
     setHeld(tick);
-    if (tick >= end && isPast) void backToNow();
-    else if (tick < end) lookBack(tick);
+    if (tick >= now && isPast) void backToNow();
+    else if (tick < now) lookBack(tick);
   };
   return (
     <section className={`line ${styles.timeline}`} data-of-bench="" data-past={isPast} aria-label="Timeline">
@@ -71,7 +75,10 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
           thumbLabel="Moment shown by all panels"
           value={shown}
           onChange={go}
-          onChangeEnd={() => setHeld(undefined)}
+          onChangeEnd={(tick) => {
+            setHeld(undefined);
+            if (bench.record && !isPast && tick > now) void stepTo(now, tick);
+          }}
         />
         <span className={styles.marks} aria-hidden="true">
           {marks.slice(-MOST_MARKS).map((event) => (
@@ -86,6 +93,12 @@ function Bar({ bench, first }: { bench: Bench; first: number }) {
       <Compare />
     </section>
   );
+}
+
+/** Play a record on to a tick, at once; a command takes only so many ticks. */
+async function stepTo(now: number, tick: number): Promise<void> {
+  for (let from = now; from < tick; from += MOST_STEP)
+    if (!(await send({ kind: "step", ticks: Math.min(MOST_STEP, tick - from) }))) return;
 }
 
 function BackToNow() {

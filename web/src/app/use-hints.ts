@@ -19,8 +19,8 @@ export function useHints(): TickedHints | undefined {
   const bench = useBench(
     useShallow(({ bench }) => {
       if (!bench) return undefined;
-      const { axes, controllers, diagnosers, replay_of, signals } = bench;
-      return { axes, controllers, diagnosers, replay_of, signals };
+      const { axes, controllers, diagnosers, record, replay_of, signals } = bench;
+      return { axes, controllers, diagnosers, record, replay_of, signals };
     }),
   );
   const events = useBench((s) => s.events);

@@ -23,7 +23,7 @@ interface ViewStore {
   card: CardId;
   /** The sample of a diagnoser that was clicked, to be explained. */
   sample: { diagnoser: string; tick: number } | undefined;
-  dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts" | "editor";
+  dialog: "none" | "keys" | "bench" | "mine" | "share" | "layouts" | "editor" | "record";
   /** On a phone: the view below the scope, unless it is the usual one. */
   extra: string;
   /** Whether the layout is in large type. */

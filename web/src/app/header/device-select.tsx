@@ -13,6 +13,8 @@ import { HeaderSelect, useLockedWhileHidden } from "./header-select";
 
 const OWN = { value: "own", title: "Own device", about: "Given in the scenario, not in the catalogue" };
 
+const REAL = { value: "real", title: "Real device", about: "The device that was recorded", group: "On this bench" };
+
 /** Which device is on the bench; another one begins the bench again, after a question. */
 export function DeviceSelect() {
   const id = useBench((s) => (s.bench?.parameters.device as Document | undefined)?.id as string | undefined);
@@ -24,20 +26,23 @@ export function DeviceSelect() {
   const [busy, during] = useBusy();
   const suits = (device: Device) => device.plants.includes(plant ?? "");
   const offered = devices.filter((device) => suits(device) || hasUsualBench(device));
-  const choices = [...offered.filter(suits), ...offered.filter((device) => !suits(device))].map((device) => ({
-    value: device.id,
-    title: device.title,
-    about: deviceWords(device),
-    group: suits(device) ? "On this bench" : "On a bench of another kind",
-  }));
+  const record = useBench((s) => Boolean(s.bench?.record));
+  const choices = record
+    ? [REAL]
+    : [...offered.filter(suits), ...offered.filter((device) => !suits(device))].map((device) => ({
+        value: device.id,
+        title: device.title,
+        about: deviceWords(device),
+        group: suits(device) ? "On this bench" : "On a bench of another kind",
+      }));
   const known = devices.find((device) => device.id === id);
-  if (!known && devices.length > 0) choices.push({ ...OWN, group: "On this bench" });
+  if (!record && !known && devices.length > 0) choices.push({ ...OWN, group: "On this bench" });
   const begin = (device: Device) => during(() => beginWith(device).then(() => setAsked(undefined)));
   return (
     <>
       <HeaderSelect
         label="Device"
-        value={known?.id ?? OWN.value}
+        value={record ? REAL.value : (known?.id ?? OWN.value)}
         choices={choices}
         locked={locked}
         onChoose={(name) => setAsked(devices.find((device) => device.id === name))}

@@ -71,9 +71,11 @@ function Words({ choice }: { choice: Choice | undefined }) {
 /** Why a person cannot change the bench from the header; nothing where they can. */
 export function useLocked(): string | undefined {
   const replay = useBench((s) => Boolean(s.bench?.replay_of));
+  const record = useBench((s) => Boolean(s.bench?.record));
   const unknown = useBoardState() === undefined;
   const drives = useMay("drive");
   if (replay) return "A recording plays. The past cannot be changed.";
+  if (record) return "A record plays. It was measured, and nothing can act on it.";
   if (!drives) return WATCHING;
   return unknown ? "The page is not connected to the bench." : undefined;
 }

@@ -41,11 +41,17 @@ export function Header() {
   );
 }
 
+/** The sensor of a record, which is in no list to choose from. */
+const MEASURED = { value: "recorded", title: "As measured", about: "The displacement in the record" };
+
 /** Which sensor feeds the controllers. */
 export function SensorSelect() {
   const { kind, sensors, use } = useSensor();
   const locked = useLockedWhileHidden();
-  const choices = sensors.filter(feeds).map(({ name, title, summary }) => ({ value: name, title, about: summary }));
+  const record = useBench((s) => Boolean(s.bench?.record));
+  const choices = record
+    ? [MEASURED]
+    : sensors.filter(feeds).map(({ name, title, summary }) => ({ value: name, title, about: summary }));
   return (
     <HeaderSelect label="Sensor" value={kind} choices={choices} locked={locked} onChoose={(name) => void use(name)} />
   );

@@ -26,6 +26,7 @@ export function ControllersPanel() {
   const slots = useBench(useShallow((s) => s.bench?.slots));
   const controllers = useBench((s) => s.bench?.controllers);
   const signals = useBench((s) => s.bench?.signals);
+  const plays = useBench((s) => s.bench?.record);
   const supervised = useBench((s) => !!s.bench?.supervisor);
   const { block, blocks } = useCatalog();
   const told = useMemo(() => {
@@ -46,6 +47,12 @@ export function ControllersPanel() {
   const outside = list.filter(({ id }) => id === "rate" || id === "reference" || driving.includes(id));
   return (
     <section className="view-page" aria-label="Choice">
+      {plays && (
+        <p className="note">
+          A controller cannot drive a record: the voltage was measured. The controllers here run in shadow, on its
+          samples.
+        </p>
+      )}
       {supervised && (
         <Slot title="Supervisor">
           <Parameters of="supervisor" label="Parameters of the supervisor" />

@@ -4,6 +4,7 @@ import { fits } from "../../api/fits";
 import { useCatalog } from "../../api/use-catalog";
 import { actions } from "../../bench/actions";
 import { useBench } from "../../stream/bench-store";
+import { EmptyState } from "../../ui/empty-state";
 import { formatCount } from "../../ui/format";
 import { CatalogueMissing } from "../card/catalogue-missing";
 import { groupsOf } from "./fault-draft";
@@ -15,6 +16,13 @@ export function FaultsPanel() {
   const active = useBench((s) => s.bench?.faults);
   const axes = useBench((s) => s.bench?.axes) ?? [];
   const [open, setOpen] = useState<string | undefined>(undefined);
+  const plays = useBench((s) => s.bench?.record);
+  if (plays)
+    return (
+      <EmptyState title="No faults on a record">
+        The device was measured: no fault of it can be injected now. Its faults are in the record.
+      </EmptyState>
+    );
   const faults = blocks.filter((b) => b.family === "faults" && fits(b, axes));
   if (faults.length === 0)
     return <CatalogueMissing loading="Loading the faults">Faults come from the server's catalogue.</CatalogueMissing>;

@@ -1,10 +1,12 @@
 import { Box, Tooltip } from "@mantine/core";
+import { useCallback, useMemo } from "react";
 import type { Score } from "../../api/types";
 import { hypothesisWords } from "../../bench/hypothesis-words";
 import { useView } from "../../bench/view-store";
 import { useBench } from "../../stream/bench-store";
 import { Figure } from "../../ui/figure";
 import { formatCount, formatNumber, formatPercent, formatSi } from "../../ui/format";
+import { useLiveValues } from "../schematic/use-live-values";
 import type { TruthSwitch } from "./delays";
 import { FalseSwitches } from "./false-switches";
 import styles from "./lanes.module.css";
@@ -16,6 +18,7 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   const last = switches.at(-1);
   const winner = typeof score?.winner === "number" ? names[score.winner] : score?.winner;
+  const unlabelled = useBench((s) => s.bench?.record?.labels.length === 0);
   const stopped = useBench((s) => s.bench?.state === "tripped");
   const right = score !== undefined && isRight(score);
   return (
@@ -30,6 +33,10 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
           <dd title={`The board has stopped. The last verdict was ${winner ? hypothesisWords(winner) : "none"}.`}>
             stopped
           </dd>
+        ) : unlabelled ? (
+          <dd className={styles.winner}>
+            <Said id={id} names={names} />
+          </dd>
         ) : (
           <dd className={styles.winner} data-right={right} title={winner}>
             {winner ? hypothesisWords(winner) : "–"}
@@ -37,6 +44,11 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
           </dd>
         )}
       </div>
+      {unlabelled && (
+        <Figure name="truth" title="The record has no labels: the truth is not known, and there is no score.">
+          not in the record
+        </Figure>
+      )}
       <Figure name={last?.isStartUp ? "start-up" : "delay"} title={last?.isStartUp ? START_UP : undefined}>
         <Delay last={last} dtMs={dtMs} />
       </Figure>
@@ -45,6 +57,17 @@ export function LanesHeadline({ id, names, switches }: { id: string; names: stri
       <WeightedEstimate id={id} />
     </dl>
   );
+}
+
+/** The verdict itself, where no score has it. */
+function Said({ id, names }: { id: string; names: string[] }) {
+  const shown = useMemo(() => ({ winner: `${id}.winner` }), [id]);
+  const say = useCallback(
+    (_key: string, index: number) => (names[index] ? hypothesisWords(names[index]) : "–"),
+    [names],
+  );
+  const live = useLiveValues(shown, say);
+  return <output ref={live("winner")} />;
 }
 
 /** The meaning of a start-up. */

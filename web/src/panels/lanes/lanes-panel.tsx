@@ -21,6 +21,7 @@ const ALL = "";
 export function LanesPanel() {
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const signals = useBench((s) => s.bench?.signals);
+  const unlabelled = useBench((s) => s.bench?.record?.labels.length === 0);
   const blind = useBench((s) => s.blind);
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const usual = useRunWindow();
@@ -63,7 +64,13 @@ export function LanesPanel() {
         </Box>
       )}
       {one ? (
-        <DiagnoserLanes id={one.id} names={one.names} withTruth={one.truth} time={time} onWindow={setWindowMs} />
+        <DiagnoserLanes
+          id={one.id}
+          names={one.names}
+          withTruth={one.truth && !unlabelled}
+          time={time}
+          onWindow={setWindowMs}
+        />
       ) : (
         <Race contestants={all} time={time} picture={picture} />
       )}

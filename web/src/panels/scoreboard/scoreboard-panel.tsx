@@ -16,8 +16,15 @@ export function ScoreboardPanel() {
   const scores = useBench((s) => s.scores);
   const diagnosers = useBench((s) => s.bench?.diagnosers);
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
+  const unlabelled = useBench((s) => s.bench?.record?.labels.length === 0);
   const entries = Object.entries(scores);
   const ids = useMemo(() => Object.keys(diagnosers ?? {}), [diagnosers]);
+  if (unlabelled)
+    return (
+      <EmptyState title="No score">
+        The record has no labels, so the truth is not known: there are verdicts, and nothing to score them by.
+      </EmptyState>
+    );
   if (entries.length === 0)
     return (
       <EmptyState title="No score">
