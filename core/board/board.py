@@ -190,9 +190,13 @@ class Board:
         return idle
 
     def _left(self) -> int:
-        """Return the ticks that the plant can still play; at the end of a record the board trips."""
-        left = CHUNK if self.spec.record is None else self.spec.record.samples - self.tick
-        if left <= 0 and self.trip is None:
+        """Return the ticks that the plant can play now; at the end of a record that does not grow the board trips."""
+        record = self.spec.record
+        if record is None:
+            return CHUNK
+        is_growing = record.is_growing  # before its samples: the last of them come before it ends
+        left = record.samples - self.tick
+        if left <= 0 and not is_growing and self.trip is None:
             self._trip("the record has ended")
         return left
 
