@@ -41,7 +41,8 @@ class Doings:
     def __init__(self, spec: Spec) -> None:
         self._library, self._dt_ms = spec.library, spec.dt_ms
         guard: Any = spec.guard.params
-        self._limits = {f"guard.{name}": getattr(guard, name) for name in ("travel_um", "rail_ms")}
+        limits = (name for name in ("travel_um", "rail_ms") if hasattr(guard, name))  # the guard of a record has none
+        self._limits = {f"guard.{name}": getattr(guard, name) for name in limits}
 
     def sentence(self, entry: LogEntry, samples: NarratorSignals) -> Sentence | None:
         """Say an entry; nothing if it is of another kind."""

@@ -274,6 +274,8 @@ class DeviceTime:
         if self.steps:
             return None
         target = self.pacer.target(self._bench.board.tick, now)
+        if (record := self._bench.live_record) is not None and record.is_growing:
+            target = record.samples if target is None else min(target, record.samples)
         if self.ends_at is not None:
             return self.ends_at if target is None else min(target, self.ends_at)
         return target
@@ -294,6 +296,8 @@ class DeviceTime:
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for a round; refresh the status now and then."""
         pacer = self.pacer
+        if (record := self._bench.live_record) is not None:
+            record.arrivals.played(self._bench.board.tick, now)
         if self.is_started:
             pacer.record(self._bench.board.tick, target if pacer.scale is not None else None, now)
         overruns, given_up = self._counted
