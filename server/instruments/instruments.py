@@ -72,10 +72,9 @@ class Instruments:
         """Listen no longer, and end all connections and records."""
         if self._server is not None:
             self._server.close()
-        tasks = list(self._readers.values())
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        for reader in self._readers:
+            reader.close("the server is stopping")
+        await asyncio.gather(*self._readers.values(), return_exceptions=True)
         for source in self._sources.values():
             for record in source.records:
                 record.end()
