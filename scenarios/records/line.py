@@ -38,6 +38,7 @@ class LineHeader(BaseModel):
     rate_khz: float = Field(gt=0, le=1e6)
     pairing: Literal["next", "last"] = "next"
     session: str = Field(default="", max_length=80)
+    shots: bool = False
 
     @property
     def factors(self) -> Numbers:

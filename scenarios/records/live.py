@@ -52,7 +52,7 @@ class LiveRecord:
         self.names: list[str] = about["names"]
         self.samples = max(0, (os.fstat(descriptor).st_size - ABOUT_BYTES) // PAIR)
         self.is_connected = is_growing
-        self.order, self.arrivals = BlockOrder(self.rate_khz), Arrivals()
+        self.order, self.arrivals = BlockOrder(self.rate_khz, bool(about["shots"])), Arrivals()
         self._is_paired_last = about["pairing"] == "last"
         self._descriptor = descriptor
         self._held = 0.0
@@ -69,7 +69,7 @@ class LiveRecord:
             When the folder cannot be written.
         """
         path = folder / f"{secrets.token_hex(32)}{ENDING}"
-        about = header.model_dump(include={"rate_khz", "source", "names", "pairing"})
+        about = header.model_dump(include={"rate_khz", "source", "names", "pairing", "shots"})
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)

@@ -27,9 +27,12 @@ class BlockOrder:
     ----------
     rate_khz : float
         Samples for each ms.
+    shots : bool
+        Whether each gap is a break: the device is not observed between two shots of an oscilloscope.
     """
 
     rate_khz: float
+    shots: bool = False
     blocks: int = 0
     lost_blocks: int = 0
     late_blocks: int = 0
@@ -81,7 +84,7 @@ class BlockOrder:
             text = f"begins {back} before the end of the block before it"
             hint = "its time is of its first sample, by the clock of the samples"
             raise InputError(text, f"block {head.number}", hint)
-        if gap > LONGEST_GAP_S * 1e3 * self.rate_khz:
+        if gap > (1.5 if self.shots else LONGEST_GAP_S * 1e3 * self.rate_khz):
             self.breaks += 1
             return 1
         missing = round(gap) if gap > 1.5 else 0

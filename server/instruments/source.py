@@ -70,7 +70,7 @@ class Source:
         self.connection: InstrumentReader | None = None
         """The connection by which it sends now."""
         self.records: list[LiveRecord] = []
-        self.order, self._arrivals = BlockOrder(header.rate_khz), Arrivals()
+        self.order, self._arrivals = BlockOrder(header.rate_khz, header.shots), Arrivals()
         self._samples = 0
         self._last = clock()
         self._left: float | None = None
@@ -92,11 +92,11 @@ class Source:
             raise InputError(f"{self.name} sends already, from {self.address}", "header.source", code="conflict")
         if self.connection is not None:
             self.connection.close("another connection has taken its place")
-        described = {"rate_khz", "pairing"}
+        described = {"rate_khz", "pairing", "shots"}
         if header.model_dump(include=described) != self.header.model_dump(include=described):
             for record in list(self.records):
-                self.end(record, f"{self.name} has come back with another rate or pairing")
-            self.order = BlockOrder(header.rate_khz)
+                self.end(record, f"{self.name} has come back with another rate, pairing or shots")
+            self.order = BlockOrder(header.rate_khz, header.shots)
         self.header, self.connection, self.address = header, connection, address
         self._last, self.refused = self._clock(), ""
         self.order.begin(header.session)
