@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,39 @@ MOST_SAMPLES = 20_000_000
 """Longest record: 200 s at 100 kHz, 320 MB."""
 UNLABELLED = -1
 """Label of a sample whose verdict is not known."""
+Stretch = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64] | None]
+"""Drive, displacement and labels of some samples."""
+
+
+class PlayedRecord(Protocol):
+    """A record as a board plays it."""
+
+    @property
+    def rate_khz(self) -> float:
+        """Samples for each ms."""
+
+    @property
+    def hypotheses(self) -> Sequence[str]:
+        """The names of the labels."""
+
+    @property
+    def has_labels(self) -> bool:
+        """Whether a label says the truth at some samples."""
+
+    @property
+    def key(self) -> str:
+        """The name by which the shelf finds it."""
+
+    @property
+    def samples(self) -> int:
+        """Number of samples so far."""
+
+    @property
+    def is_growing(self) -> bool:
+        """Whether more samples may come, for which the board then waits."""
+
+    def stretch(self, first: int, end: int) -> Stretch:
+        """Return some samples, which are there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +98,22 @@ class MeasuredRecord:
         if not np.isfinite(self.displacement).any():
             raise InputError("has no finite number at all", "displacement")
 
+    is_growing: ClassVar[bool] = False
+
     @property
     def samples(self) -> int:
         """Number of samples."""
         return len(self.drive)
+
+    @property
+    def has_labels(self) -> bool:
+        """Whether a label says the truth at some samples."""
+        return self.label is not None
+
+    def stretch(self, first: int, end: int) -> Stretch:
+        """Return some samples."""
+        label = self.label
+        return self.drive[first:end], self.displacement[first:end], None if label is None else label[first:end]
 
     @cached_property
     def key(self) -> str:
@@ -86,7 +131,7 @@ class MeasuredRecord:
 class RecordShelf(Protocol):
     """A place for records that outlasts the process."""
 
-    def get(self, key: str) -> MeasuredRecord | None:
+    def get(self, key: str) -> PlayedRecord | None:
         """Return a record, or nothing."""
 
 
@@ -99,7 +144,7 @@ def find_on(shelf: RecordShelf) -> None:
     _shelf = shelf
 
 
-def record_of(key: str, path: str) -> MeasuredRecord:
+def record_of(key: str, path: str) -> PlayedRecord:
     """Return the record with this key.
 
     Raises

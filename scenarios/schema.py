@@ -211,8 +211,9 @@ class Scenario:
         """Length in ticks, or None if it has no end."""
         if self.head.duration_ms is not None:
             return max(1, round(self.head.duration_ms / self.spec.dt_ms))
-        if self.head.samples is None and self.spec.record is not None:
-            return self.spec.record.samples
+        record = self.spec.record
+        if self.head.samples is None and record is not None:
+            return None if record.is_growing else record.samples
         return self.head.samples
 
     @property

@@ -36,6 +36,7 @@ from server.classroom.views import Views
 from server.classroom.votes import Votes
 from server.clock import Clock, ManualClock
 from server.computing.computing import Computing
+from server.instruments.instruments import Instruments
 from server.lag import Lateness, probe
 from server.metrics import Metrics
 from server.progress import ProgressStreams
@@ -169,6 +170,7 @@ class Service:
         )
         self.views = Views(self.benches, self.people, self.hub, self.idling, self.viewers is not None, self.close_bench)
         self.kernels = Kernels()
+        self.instruments = Instruments(settings, self.benches, self.engine)
         self.fusing = Fusing(self.benches, self.engine, self.computing)
         self.is_ready = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -196,10 +198,11 @@ class Service:
         await self.kernels.start()
         await self._bring_back_seen()
         await self.queue.recover()
+        await self.instruments.start()
         tasks = [asyncio.create_task(self.hub.run()), asyncio.create_task(probe(self.lag))]
         tasks.append(asyncio.create_task(self.keeping.run(self.clock)))
         lasting = (self.audit, self.checkpoints, self.classes, self.driving, self.idling, self.progress, self.sheets)
-        tasks += [asyncio.create_task(part.run(self.clock)) for part in lasting]
+        tasks += [asyncio.create_task(part.run(self.clock)) for part in (*lasting, self.instruments)]
         tasks.append(asyncio.create_task(self.queue.warm(self._calm)))
         tasks.append(asyncio.create_task(self.computing.warm(self._calm)))
         # pyarrow, and pandas where it is installed, load with the first array: for longer than a recording may wait
@@ -215,6 +218,7 @@ class Service:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            await self.instruments.close()
             await self.kernels.stop()
             if self.viewers is not None:
                 await self.viewers.close()

@@ -72,6 +72,20 @@ class Settings(BaseSettings):
         [],
         description="Files of user units that every new bench has, one unit each; `--unit FILE` on the command line.",
     )
+    instrument_port: int | None = Field(
+        None,
+        ge=0,
+        le=65535,
+        description="Port on which instruments send their samples (docs/your-device.md); 0 chooses a free one, and "
+        "unset takes no instrument.",
+    )
+    instrument_host: str = Field("127.0.0.1", description="Address on which the server listens for instruments.")
+    instrument_peers: list[str] = Field(
+        ["127.0.0.0/8", "::1"], description="Addresses or networks from which instruments may connect."
+    )
+    instrument_samples: int = Field(
+        100_000_000, ge=1000, description="Samples of the longest record of an instrument; one takes 16 bytes of disk."
+    )
     metrics_open: bool = Field(False, description="Serve `/metrics` without a token.")
     open_page: bool = Field(False, description="Open the page in a browser once the server answers.")
 
@@ -160,7 +174,7 @@ class Settings(BaseSettings):
         "INFO", pattern="^(DEBUG|INFO|WARNING|ERROR)$", description="Least severe level that is logged."
     )
 
-    @field_validator("trusted_proxies")
+    @field_validator("trusted_proxies", "instrument_peers")
     @classmethod
     def _are_networks(cls, given: list[str]) -> list[str]:
         """Refuse a text that is neither an address nor a network."""

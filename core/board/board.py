@@ -189,9 +189,13 @@ class Board:
         return idle
 
     def _playable(self, n: int) -> int:
-        """Return how many of some ticks the plant can still play; at the end of a record the board trips."""
-        left = n if self.spec.record is None else self.spec.record.samples - self.tick
-        if left <= 0 < n and self.trip is None:
+        """Return how many of some ticks the plant can play now; at the end of a record the board trips."""
+        record = self.spec.record
+        if record is None:
+            return n
+        is_growing = record.is_growing  # read before the samples: the last samples come before the end
+        left = record.samples - self.tick
+        if left <= 0 < n and not is_growing and self.trip is None:
             self._trip("the record has ended")
         return min(n, left)
 

@@ -11,7 +11,7 @@ from core.loop import score
 
 def scores(spec: Spec, wiring: Wiring) -> dict[str, score.Scores]:
     """Return the score of every diagnoser that chooses between hypotheses; none on a record without labels."""
-    if spec.record is not None and spec.record.label is None:
+    if spec.record is not None and not spec.record.has_labels:
         return {}
     found = {}
     for name, section in spec.diagnosers.items():

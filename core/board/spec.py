@@ -20,7 +20,7 @@ from core.loop.axis_drive import AxisDrive
 from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
-from core.measured_record import MeasuredRecord, record_of
+from core.measured_record import PlayedRecord, record_of
 from core.plant.record import RecordPlant
 from core.table import Table
 
@@ -121,7 +121,7 @@ class Spec:
         return list(self.driving.values())[-1]
 
     @cached_property
-    def record(self) -> MeasuredRecord | None:
+    def record(self) -> PlayedRecord | None:
         """The record that the plant plays, if it is one."""
         params = self.plant.params
         return record_of(params.record, "plant.record") if isinstance(params, RecordPlant.Params) else None

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from core.block import Block, BlockParams, FloatArray, parameter
-from core.measured_record import UNLABELLED, MeasuredRecord
+from core.measured_record import UNLABELLED, PlayedRecord
 from core.ports import BlockPorts, output
 from core.record import Record, Vector, vector
 
@@ -76,16 +76,18 @@ class RecordPlant(Block):
             x.missing = 1.0
 
 
-def supply(state: FloatArray, params: Any, record: MeasuredRecord, tick: int, n: int) -> None:
+def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: int) -> None:
     """Put the samples of the next ticks into the state, at most ``WINDOW``: without offset, the voltage delayed."""
     s: Any = RecordPlant.State(state)
     end = min(tick + n, record.samples)
     count, s.first = end - tick, tick
-    s.drive[:count] = delayed(record.drive, params.delay_samples, tick, end)
-    s.displacement[:count] = record.displacement[tick:end]
+    start = max(tick - int(params.delay_samples) - 1, 0)
+    drive, displacement, label = record.stretch(start, end)
+    s.drive[:count] = delayed(drive, params.delay_samples, tick - start, end - start)
+    s.displacement[:count] = displacement[tick - start :]
     if params.offset_um != 0.0:
         s.displacement[:count] -= params.offset_um
-    s.label[:count] = UNLABELLED if record.label is None else record.label[tick:end]
+    s.label[:count] = UNLABELLED if label is None else label[tick - start :]
 
 
 def delayed(drive: FloatArray, delay: float, first: int, end: int) -> FloatArray:

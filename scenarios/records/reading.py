@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, one_line, short, unknown
 from core.measured_record import UNLABELLED, MeasuredRecord
+from scenarios.records import live
 from scenarios.records.binary_table import mat_columns, npz_columns, parquet_columns
 from scenarios.records.clock import Grid, displacements_at, grid, rows_at, said_lost
 from scenarios.records.columns import Columns, Numbers, assigned, factor
@@ -72,10 +73,12 @@ def read_record(
         Naming row, column and reason.
     """
     ending = Path(name).suffix.lower()
-    if ending not in READERS:
-        raise unknown("kind of file", ending or name, READERS, "record")
+    if ending not in (*READERS, live.ENDING):
+        raise unknown("kind of file", ending or name, (*READERS, live.ENDING), "record")
     if len(content) > MOST_BYTES:
         raise InputError(f"has {len(content)} bytes; at most {MOST_BYTES}", "record")
+    if ending == live.ENDING:
+        return _of_instrument(content)
     columns = READERS[ending](content)
     place = assigned(columns, named or {})
     _refuse_uneven(columns, place)
@@ -98,6 +101,15 @@ def read_record(
     if lost and not notes:
         notes.append(said_lost(lost))
     return ReadRecord(MeasuredRecord(rate, drive.copy(), displacement.copy(), label, names), place, notes)
+
+
+def _of_instrument(content: bytes) -> ReadRecord:
+    """Return the record that an instrument sent: in the units of the bench, at regular samples."""
+    about, pairs = live.content_of(content)
+    record = MeasuredRecord(float(about["rate_khz"]), pairs[:, 0].copy(), pairs[:, 1].copy())
+    lost = int(np.isnan(record.displacement).sum())
+    notes = [said_lost(lost)] if lost else []
+    return ReadRecord(record, dict(zip(("drive", "displacement"), about["names"], strict=True)), notes)
 
 
 def _in_units(columns: Columns, part: str, name: str) -> Numbers:

@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,8 +15,9 @@ from zipfile import BadZipFile
 import numpy as np
 
 from core.errors import InputError
-from core.measured_record import MeasuredRecord, find_on
+from core.measured_record import MeasuredRecord, PlayedRecord, find_on
 from scenarios.kernel_cache import user_cache
+from scenarios.records import live
 
 FOLDER = "COMBBENCH_RECORDS"
 """Variable of the environment that names the folder; worker processes inherit it."""
@@ -36,14 +37,16 @@ class RecordFolder:
             return self._path
         return Path(os.environ.get(FOLDER) or user_cache() / "records")
 
-    def get(self, key: str) -> MeasuredRecord | None:
-        """Return a record; nothing when its file is absent or damaged."""
+    def get(self, key: str) -> PlayedRecord | None:
+        """Return a record, also a record of an instrument; nothing when its file is absent or damaged."""
         if len(key) != 64 or set(key) - set(KEY):
             return None
-        try:
-            return _loaded(self.path / f"{key}.npz")
-        except (OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
-            return None
+        if record := live.growing(key):
+            return record
+        for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
+            with suppress(OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
+                return read(self.path / f"{key}{ending}")
+        return None
 
     def keep(self, record: MeasuredRecord) -> str:
         """Keep a record, and return its key; a record that is here already is not written again.

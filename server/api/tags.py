@@ -9,6 +9,7 @@ TAGS = {
     "schemas": "JSON Schemas of the documents that people write",
     "units": "Controllers, diagnosers and other blocks that people write",
     "benches": "Live benches, commands to them, events and forks",
+    "instruments": "Instruments that send their samples, and benches on them",
     "experiments": "Measurements on a copy of a bench",
     "diagnosers": "Conclusions of a diagnoser from its samples, and hypotheses that it cannot tell apart",
     "readouts": "Evaluations of the angular rate",

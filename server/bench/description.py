@@ -23,6 +23,7 @@ from server.bench.status import (
     Bench,
     BenchStatus,
     DiagnoserInfo,
+    InstrumentStatus,
     Pending,
     PlayedRecord,
     State,
@@ -79,6 +80,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
         redo=bench.changes.last_undone,
         trip=board.trip,
         supervisor=_supervisor(board) if isinstance(board, Board) and board.spec.supervisors else None,
+        instrument=_instrument(bench),
         scores={name: found for name, found in board.scores().items() if found.samples},
         last_event=bench.events.last,
         recording=list(bench.recordings.under_way),
@@ -86,6 +88,31 @@ def status_of(bench: LiveBench) -> BenchStatus:
         earliest_tick=bench.track and bench.track.first_tick,
         travel=bench.travel and bench.travel.model_copy(),
         origin=bench.origin and bench.origin.model_copy(update={"is_past": bench.is_past}),
+    )
+
+
+def _instrument(bench: LiveBench) -> InstrumentStatus | None:
+    """Describe the instrument that a bench plays, as it is now."""
+    record = bench.live_record
+    if record is None:
+        return None
+    order, arrivals, now = record.order, record.arrivals, bench.clock()
+    return InstrumentStatus(
+        source=record.source,
+        is_connected=record.is_connected,
+        is_growing=record.is_growing,
+        names=record.names,
+        received_khz=arrivals.rate_khz(now),
+        lag_ms=arrivals.lag_ms(now),
+        latency_p95_ms=arrivals.latency_p95_ms,
+        record=record.key,
+        samples=record.samples,
+        blocks=order.blocks,
+        lost_blocks=order.lost_blocks,
+        late_blocks=order.late_blocks,
+        doubled_blocks=order.doubled_blocks,
+        lost_samples=order.lost_samples,
+        breaks=order.breaks,
     )
 
 

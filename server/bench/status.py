@@ -115,6 +115,28 @@ class SupervisorStatus(BaseModel):
     last_act: SupervisorAct | None
 
 
+class InstrumentStatus(BaseModel):
+    """The instrument whose samples a bench plays as they come."""
+
+    source: str
+    is_connected: bool = Field(description="Whether it sends; the bench waits for one that is gone")
+    is_growing: bool = Field(description="Whether more samples may come; else the board trips at the end of the record")
+    names: list[str] = Field(description="Its names of drive and displacement")
+    received_khz: float = Field(description="Samples for each ms that came lately")
+    lag_ms: float = Field(description="Time for which the oldest block waits that the board has not played")
+    latency_p95_ms: float | None = Field(
+        description="95th percentile of the time from the arrival of a block to its last verdict; null: no verdict yet"
+    )
+    record: str = Field(description="Key of the record that grows from it")
+    samples: int = Field(description="Samples of the record so far")
+    blocks: int
+    lost_blocks: int
+    late_blocks: int
+    doubled_blocks: int
+    lost_samples: int = Field(description="Samples that are missing; the measurement is held meanwhile")
+    breaks: int = Field(description="Gaps of unknown length, each marked by one lost sample")
+
+
 class BenchStatus(BaseModel):
     """The changing part of a bench."""
 
@@ -137,6 +159,7 @@ class BenchStatus(BaseModel):
     redo: Undoable | None = Field(None, description="The change that redo makes again")
     trip: Trip | None
     supervisor: SupervisorStatus | None = Field(None, description="The supervisor, if the bench has one")
+    instrument: InstrumentStatus | None = Field(None, description="The instrument that it plays, if it does")
     scores: dict[str, Scores] = Field(description="Of each diagnoser that has judged a sample, against the truth")
     last_event: int
     recording: list[str] = Field(description="Recordings under way")

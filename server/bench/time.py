@@ -28,6 +28,8 @@ SHORTLY_S = 2.0
 """Wall time at the time scale that is left before the waiting command, to see the moment before."""
 CAREFUL_S = 0.05
 """The same for a condition, whose moment is not known: the longest it can be overrun."""
+MOST_BEHIND_S = 0.005
+"""Time that a bench which plays an instrument has in each turn."""
 NO_END = 2**53
 
 Reason = Literal["quiet_lead", "skip"]
@@ -274,6 +276,8 @@ class DeviceTime:
         if self.steps:
             return None
         target = self.pacer.target(self._bench.board.tick, now)
+        if (record := self._bench.live_record) is not None and record.is_growing:
+            target = record.samples if target is None else min(target, record.samples)
         if self.ends_at is not None:
             return self.ends_at if target is None else min(target, self.ends_at)
         return target
@@ -284,16 +288,33 @@ class DeviceTime:
             return self.steps.slice()
         bench = self._bench
         wanted = bench.board.chunk if target is None else target - bench.board.tick
-        if wanted > 0 and not self.fast_forward.advance(wanted):
+        if wanted > 0 and not self._run(wanted):
             return False
         if self.ends_at is not None and bench.board.tick >= self.ends_at and self.is_started:
             self._finish()
             return self.is_started and target is None  # a span that begins again has its target from the next round on
         return self.is_started and (target is None or bench.board.tick < target)
 
+    def _run(self, ticks: int) -> bool:
+        """Run ticks, few at once; false once an awaited command has taken effect.
+
+        Samples of an instrument come whether the engine wakes in time or not, so a bench that plays them runs more.
+        """
+        bench = self._bench
+        began, end = bench.clock(), bench.board.tick + ticks
+        while True:
+            before = bench.board.tick
+            if not self.fast_forward.advance(end - before):
+                return False
+            ran = bench.board.tick - before
+            if bench.live_record is None or not 0 < ran < end - before or bench.clock() - began >= MOST_BEHIND_S:
+                return True
+
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for a round; refresh the status now and then."""
         pacer = self.pacer
+        if (record := self._bench.live_record) is not None:
+            record.arrivals.played(self._bench.board.tick, now)
         if self.is_started:
             pacer.record(self._bench.board.tick, target if pacer.scale is not None else None, now)
         overruns, given_up = self._counted

@@ -220,6 +220,8 @@ _DOORS = {
         GET {CLASS}/audit
         POST GET DELETE {CLASS}/blind
         GET {CLASS}/games/{{game_id}}
+        GET {API}/instruments
+        POST {API}/instruments/{{name}}/benches
         GET /metrics
         GET /class
         GET /runs

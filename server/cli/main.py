@@ -26,6 +26,7 @@ from server.cli.benchmark import benchmark
 from server.cli.diagnose import diagnose_file
 from server.cli.export import fmu
 from server.cli.games import game
+from server.cli.instrument import instrument
 from server.cli.lessons import lectures, sheets
 from server.cli.replay import replay
 from server.cli.run import run
@@ -57,6 +58,7 @@ app = typer.Typer(cls=OneLine, no_args_is_help=True, add_completion=False, prett
 app.command()(run)
 app.command()(replay)
 app.command("diagnose")(diagnose_file)
+app.command()(instrument)
 app.command()(fmu)
 app.command()(bench)
 app.command()(benchmark)

@@ -455,6 +455,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/instruments": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Instruments
+         * @description List the instruments that have connected, with the counts of their blocks.
+         */
+        get: operations["list_instruments"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/instruments/{name}/benches": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Open On Instrument
+         * @description Make a bench that plays an instrument from its next block on.
+         *
+         *     The samples are kept as a record, under the key in the status of the bench. A run of its scenario gives the same
+         *     bits.
+         */
+        post: operations["open_on_instrument"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/benches/{bench_id}/narration": {
         parameters: {
             query?: never;
@@ -3578,6 +3621,8 @@ export interface components {
             trip: components["schemas"]["Trip"] | null;
             /** @description The supervisor, if the bench has one */
             supervisor?: components["schemas"]["SupervisorStatus"] | null;
+            /** @description The instrument that it plays, if it does */
+            instrument?: components["schemas"]["InstrumentStatus"] | null;
             /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
@@ -3814,6 +3859,37 @@ export interface components {
              * @description Name of the bench; empty: only the title of its scenario
              */
             name: string;
+        };
+        /**
+         * BenchOnInstrument
+         * @description The bench whose identifiers and diagnosers look at an instrument.
+         */
+        BenchOnInstrument: {
+            /**
+             * Scenario
+             * @description Library id, TOML text, or document
+             * @default first-look
+             */
+            scenario?: string | components["schemas"]["Scenario"];
+            /**
+             * Set
+             * @description Such as the fitted device: device.mass_kg, plant.offset_um
+             * @default {}
+             */
+            set?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Noise Um
+             * @description Noise that filters assume; null: the noise of the scenario
+             */
+            noise_um?: number | null;
+            /**
+             * Paused
+             * @description Start paused; the samples are kept meanwhile
+             * @default false
+             */
+            paused?: boolean;
         };
         /**
          * BenchmarkCard
@@ -5809,6 +5885,85 @@ export interface components {
              * @description Limit of the gain under a constant; null: beyond the map
              */
             critical_gain_constant: number | null;
+        };
+        /**
+         * InstrumentList
+         * @description The instruments that have connected since the server was started, by name.
+         */
+        InstrumentList: {
+            /**
+             * Listens
+             * @description Address and port for instruments; empty: none may connect (instrument_port)
+             */
+            listens: string;
+            /** Instruments */
+            instruments: components["schemas"]["SourceStatus"][];
+        };
+        /**
+         * InstrumentStatus
+         * @description The instrument whose samples a bench plays as they come.
+         */
+        InstrumentStatus: {
+            /** Source */
+            source: string;
+            /**
+             * Is Connected
+             * @description Whether it sends; the bench waits for one that is gone
+             */
+            is_connected: boolean;
+            /**
+             * Is Growing
+             * @description Whether more samples may come; else the board trips at the end of the record
+             */
+            is_growing: boolean;
+            /**
+             * Names
+             * @description Its names of drive and displacement
+             */
+            names: string[];
+            /**
+             * Received Khz
+             * @description Samples for each ms that came lately
+             */
+            received_khz: number;
+            /**
+             * Lag Ms
+             * @description Time for which the oldest block waits that the board has not played
+             */
+            lag_ms: number;
+            /**
+             * Latency P95 Ms
+             * @description 95th percentile of the time from the arrival of a block to its last verdict; null: no verdict yet
+             */
+            latency_p95_ms: number | null;
+            /**
+             * Record
+             * @description Key of the record that grows from it
+             */
+            record: string;
+            /**
+             * Samples
+             * @description Samples of the record so far
+             */
+            samples: number;
+            /** Blocks */
+            blocks: number;
+            /** Lost Blocks */
+            lost_blocks: number;
+            /** Late Blocks */
+            late_blocks: number;
+            /** Doubled Blocks */
+            doubled_blocks: number;
+            /**
+             * Lost Samples
+             * @description Samples that are missing; the measurement is held meanwhile
+             */
+            lost_samples: number;
+            /**
+             * Breaks
+             * @description Gaps of unknown length, each marked by one lost sample
+             */
+            breaks: number;
         };
         /**
          * Join
@@ -8710,6 +8865,72 @@ export interface components {
             name: string;
         };
         /**
+         * SourceStatus
+         * @description A source of samples.
+         */
+        SourceStatus: {
+            /** Name */
+            name: string;
+            /**
+             * Address
+             * @description Address and port from which it sends, or sent last
+             */
+            address: string;
+            /** Is Connected */
+            is_connected: boolean;
+            /**
+             * Names
+             * @description Its names of drive and displacement
+             */
+            names: string[];
+            /** Units */
+            units: string[];
+            /**
+             * Rate Khz
+             * @description Samples for each ms that it promises
+             */
+            rate_khz: number;
+            /**
+             * Received Khz
+             * @description Samples for each ms that came lately
+             */
+            received_khz: number;
+            /** Blocks */
+            blocks: number;
+            /**
+             * Lost Blocks
+             * @description Numbers that were left out
+             */
+            lost_blocks: number;
+            /**
+             * Late Blocks
+             * @description Blocks that came after a later one; they are left out
+             */
+            late_blocks: number;
+            /**
+             * Doubled Blocks
+             * @description Blocks that came twice; they are left out
+             */
+            doubled_blocks: number;
+            /** Lost Samples */
+            lost_samples: number;
+            /**
+             * Breaks
+             * @description Gaps whose length is not known, or above 10 s
+             */
+            breaks: number;
+            /**
+             * Records
+             * @description Records that grow from it now
+             */
+            records: number;
+            /**
+             * Refused
+             * @description Why its last connection was refused; empty: it was not
+             */
+            refused: string;
+        };
+        /**
          * Span
          * @description A stretch of device time.
          */
@@ -10285,6 +10506,11 @@ export interface components {
              * @default null
              */
             supervisor?: components["schemas"]["SupervisorStatus"] | null;
+            /**
+             * @description The instrument that it plays, if it does
+             * @default null
+             */
+            instrument?: components["schemas"]["InstrumentStatus"] | null;
             /**
              * Scores
              * @description Of each diagnoser that has judged a sample, against the truth
@@ -16656,6 +16882,7 @@ export type BenchCaptures = components['schemas']['BenchCaptures'];
 export type BenchClaim = components['schemas']['BenchClaim'];
 export type BenchList = components['schemas']['BenchList'];
 export type BenchName = components['schemas']['BenchName'];
+export type BenchOnInstrument = components['schemas']['BenchOnInstrument'];
 export type BenchmarkCard = components['schemas']['BenchmarkCard'];
 export type BenchmarkDetail = components['schemas']['BenchmarkDetail'];
 export type BenchmarkList = components['schemas']['BenchmarkList'];
@@ -16749,6 +16976,8 @@ export type Identification = components['schemas']['Identification'];
 export type Identified = components['schemas']['Identified'];
 export type Inject = components['schemas']['Inject'];
 export type InstabilityMap = components['schemas']['InstabilityMap'];
+export type InstrumentList = components['schemas']['InstrumentList'];
+export type InstrumentStatus = components['schemas']['InstrumentStatus'];
 export type Join = components['schemas']['Join'];
 export type Joined = components['schemas']['Joined'];
 export type KeptRecord = components['schemas']['KeptRecord'];
@@ -16877,6 +17106,7 @@ export type Snapshot = components['schemas']['Snapshot'];
 export type SnapshotList = components['schemas']['SnapshotList'];
 export type Some = components['schemas']['Some'];
 export type Somebody = components['schemas']['Somebody'];
+export type SourceStatus = components['schemas']['SourceStatus'];
 export type Span = components['schemas']['Span'];
 export type Spread = components['schemas']['Spread'];
 export type SpreadOf = components['schemas']['SpreadOf'];
@@ -17788,6 +18018,64 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["Variant"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bench"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    list_instruments: {
+        parameters: {
+            query?: {
+                /** @description Most rows of this page: 10000 unless given, at most 10000 */
+                limit?: number;
+                /** @description Cursor of the page, from the header Link of the page before; left out: the first page */
+                after?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description Address of the next page, as `<address>; rel="next"`; absent on the last page */
+                    Link?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["InstrumentList"];
+                };
+            };
+            "4XX": components["responses"]["Refused"];
+            "5XX": components["responses"]["Failed"];
+        };
+    };
+    open_on_instrument: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Id of a diagnoser or a read-out; on a twin: <twin>:<id> */
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BenchOnInstrument"];
             };
         };
         responses: {

@@ -1,0 +1,1 @@
+"""Instruments that send their samples: their connections, and the records that grow from them."""
