@@ -15,7 +15,7 @@ from core.board.instances import Instance, scored
 from core.board.kept import CHANGED
 from core.board.observer import warnings
 from core.board.program import ADDRESS, TRIPPED, WATCHED
-from core.board.pyramid import LANES
+from core.board.pyramid import LANES, WIDEST
 from core.board.spec import Section
 from core.compile.numbers import Unsupported
 from core.diagnose.consistency import AMBIGUOUS, ISOLATED, VERDICTS
@@ -89,6 +89,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
         "followed": _followed(board),
         "diagnosers": {name: _diagnoser(section) for name, section in board.diagnosers.items()},
         "faults": faults,
+        "present": writes.present(faults),
         "wirings": wirings,
         "values": values,
         "sensors": {"all": list(board.spec.sensors), "measuring": board.spec.measuring},
@@ -116,6 +117,7 @@ def _arrays(board: Board, blocks: list[Any]) -> dict[str, Any]:
         "fold": fold.START[:, 0],
         "history": {
             "lanes": LANES,
+            "widest": WIDEST,
             "capacity": history.capacity,
             "offsets": offsets,
             "sizes": sizes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -14,11 +15,12 @@ from core.board import changes
 from core.board.board import Board
 from core.board.commands import Command, HealFaults, Inject, SetValues, Switch
 from core.board.difference import change
-from core.board.instances import faults_of
+from core.board.instances import faults_of, usual_params
 from core.board.live import live_change, section_at, value_at
 from core.board.wiring import Wiring, wire
 from core.cards import ParameterCard, parameter_cards
 from core.errors import InputError
+from core.faults.fault import FaultParams, Profile
 from scenarios.in_a_file.dependence import dependence
 from scenarios.knobs import usual_range
 from scenarios.schema import Scenario
@@ -29,7 +31,7 @@ MOST_WIRINGS = 64
 """Choices of the controllers that drive in all slots."""
 REACH = 10.0
 """The usual range of a severity, in suggested severities; as on the page."""
-LEAST_SHARE = 0.5
+LEAST_SHARE, END_SHARE = 0.5, 0.05
 
 
 class Writes:
@@ -38,7 +40,7 @@ class Writes:
     Parameters
     ----------
     board : Board
-        At its first tick, without a fault.
+        At its first tick.
     scenario : Scenario
         Its severities and values that events name are exact.
     """
@@ -65,6 +67,8 @@ class Writes:
         suggested = float(block.suggested or card.default or 0.05)
         low, high = _severities(card, suggested)
         own = [command for command in self._events if isinstance(command, Inject) and command.fault == name]
+        if name in self._spec.faults:
+            own.insert(0, _present(name, self._spec.faults[name]))
         exact = [suggested, *(command.severity for command in own if command.severity)]
         plain = Inject(fault=name, severity=suggested)
         variants = [plain]
@@ -83,12 +87,12 @@ class Writes:
             "low": low,
             "high": high,
             "start": _start_of(block),
-            "absent": self._wiring.packed(row).copy(),
+            "absent": self._absent(row, block),
             "variants": [
                 {
                     "parameters": variant(command),
-                    "numbers": self._packed(row, command, suggested),
-                    **dependence(lambda value, of=command: self._packed(row, of, value), low, high, exact),  # type: ignore[misc]
+                    "packed": self._packed(row, command, suggested),
+                    "dependence": dependence(partial(self._packed, row, command), low, high, exact),
                 }
                 for command in variants
             ],
@@ -100,13 +104,18 @@ class Writes:
         instance = self._wiring.instances[row]._replace(params=params)
         return instance.packed(self._spec.context(instance.every, instance.axis))
 
+    def _absent(self, row: int, block: type[Block]) -> FloatArray:
+        """Return the numbers of a fault that is not there."""
+        instance = self._wiring.instances[row]._replace(params=usual_params(block))
+        return instance.packed(self._spec.context(instance.every, instance.axis))
+
     def _params(self, command: Inject) -> BlockParams:
         return changes.fault_params(self._spec, command, 0)
 
     def _check_alone(self, row: int, command: Inject) -> None:
         """Refuse a fault that writes more than its own numbers, or whose first state depends on it."""
         board = copy.deepcopy(self._wiring)
-        spec = self._spec.with_faults({command.fault: self._params(command)})
+        spec = self._spec.with_faults({**self._spec.faults, command.fault: self._params(command)})
         if not change(board, self._spec, spec):
             raise InputError("makes another wiring")
         own = board.packed(row)
@@ -117,6 +126,13 @@ class Writes:
         first = instance.block.initial(instance.params, spec.context(instance.every, instance.axis))
         if not _is_same(first, self._wiring.state_of(instance.key)):
             raise InputError("begins in a state that depends on its severity")
+
+    def present(self, faults: dict[str, Any]) -> dict[str, Any]:
+        """Return the faults that act from the first tick on, as the page knows them."""
+        return {
+            name: {**described(_present(name, params), faults), "since": params.start_tick}  # type: ignore[attr-defined]
+            for name, params in self._spec.faults.items()
+        }
 
     # -- controllers
 
@@ -173,7 +189,7 @@ class Writes:
             except InputError as error:
                 self.left_out.append(f"set {path}: {error}")
                 continue
-            places = set(entry["places"].tolist())
+            places = set(entry["dependence"]["places"].tolist())
             if not places:
                 continue
             if places & taken:
@@ -206,7 +222,7 @@ class Writes:
         value = float(value_at(self._spec, path))
         low, high, _ = usual_range(card.name, value, card)
         named = [one.set[path] for one in self._events if isinstance(one, SetValues) and path in one.set]
-        low, high = min(low, *named, value), max(high, *named, value)
+        low, high = (self._allowed(path, one, value) for one in (min(low, *named, value), max(high, *named, value)))
         exact = [value, *map(float, named)]
         self._check_parameters_alone(path, low + 0.75 * (high - low))
         return {
@@ -215,8 +231,16 @@ class Writes:
             "value": value,
             "low": low,
             "high": high,
-            **dependence(lambda one: self._set(path, one).p, low, high, exact),
+            "dependence": dependence(lambda one: self._set(path, one).p, low, high, exact),
         }
+
+    def _allowed(self, path: str, end: float, value: float) -> float:
+        """Return an end of a range, or a number a little before it where the end itself is refused."""
+        try:
+            self._set(path, end)
+        except InputError:
+            return end + END_SHARE * (value - end)
+        return end
 
     def _set(self, path: str, value: float) -> Wiring:
         wiring = copy.deepcopy(self._wiring)
@@ -233,6 +257,14 @@ class Writes:
             raise InputError("other blocks run")
         if not _is_same(fresh.s, self._wiring.s):
             raise InputError("a first state depends on it")
+
+
+def _present(name: str, params: BlockParams) -> Inject:
+    """Return the command that would inject a fault that is there."""
+    values = params.model_dump()
+    own = {key: value for key, value in values.items() if key not in FaultParams.model_fields}
+    profile = Profile.model_validate(values["profile"])
+    return Inject(fault=name, severity=values["severity"], profile=profile, parameters=own)
 
 
 def variant(command: Inject) -> dict[str, Any]:
