@@ -26,6 +26,7 @@ define void @offered(ptr %p, ptr %s, ptr %w, ptr %io) "wasm-export-name"="step" 
 }}
 """
 
+
 def kept(block: type[Block]) -> bytes:
     """Return the WebAssembly of a step; it is compiled, and put on the shelf, if it is not there."""
     name = name_of(block)

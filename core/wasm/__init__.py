@@ -1,1 +1,1 @@
-"""WebAssembly of kernels and steps: the instructions that machine code is made of, for a machine in a browser or a wall."""
+"""WebAssembly of kernels and steps: the instructions of machine code, for a browser or behind a wall."""

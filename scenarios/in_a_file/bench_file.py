@@ -33,6 +33,8 @@ from scenarios.schema import Scenario
 HISTORY_MB = 48.0
 MOST_TICKS = 400_000
 """Of the past: the last 4 s at 100 kHz, or what its memory has room for."""
+BEFORE_THE_START = ("scheduled", "warning")
+"""Entries of the log that say what waits, and what the scenario itself warns of."""
 ABSENT = "The narrator, classes, campaigns, recordings, the 3D view and hidden faults need the server."
 
 
@@ -95,6 +97,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
         "sensors": {"all": list(board.spec.sensors), "measuring": board.spec.measuring},
         "controllers": {name: section.block.title for name, section in board.spec.controllers.items()},
         "events": _events(board, faults),
+        "log": [entry.model_dump(exclude={"seq"}) for entry in board.log if entry.kind not in BEFORE_THE_START],
     }
     return BenchFile(code, document, writes.left_out)
 

@@ -14,7 +14,7 @@ import numpy as np
 from core.block import FloatArray
 from core.errors import InputError
 
-PROBES = 16
+PROBES = 8
 """Values at which it is found out whether all numbers are constants or multiples."""
 POINTS = 21
 """Of a grid."""
@@ -22,9 +22,7 @@ GOLDEN = 0.6180339887498949
 """Its multiples spread evenly, without any two alike."""
 
 
-def dependence(
-    pack: Callable[[float], FloatArray], low: float, high: float, exact: Sequence[float]
-) -> dict[str, Any]:
+def dependence(pack: Callable[[float], FloatArray], low: float, high: float, exact: Sequence[float]) -> dict[str, Any]:
     """Return how numbers follow a value.
 
     Parameters

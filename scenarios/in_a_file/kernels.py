@@ -25,9 +25,7 @@ KERNELS = {
             *(PLACES, NUMBERS, *RINGS, ("bool", 1)),
         ),
     ),
-    "cut": OfferedKernel(
-        _plain(history.cut), (*RINGS, PLACES, PLACES, WHOLE, WHOLE, WHOLE, WHOLE, ("float32", 3))
-    ),
+    "cut": OfferedKernel(_plain(history.cut), (*RINGS, PLACES, PLACES, WHOLE, WHOLE, WHOLE, WHOLE, ("float32", 3))),
     "join": OfferedKernel(_plain(fold.join), (FOLDS, PLACES, FOLDS)),
 }
 """By the names that the page calls them by."""

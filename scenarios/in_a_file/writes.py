@@ -138,7 +138,9 @@ class Writes:
 
     def wirings(self) -> dict[str, Any]:
         """Return the slot of each controller, and for each choice of all slots the numbers that it writes."""
-        slots = {name: [one for one in self._spec.controllers if self._slot(one) == name] for name in self._spec.driving}
+        slots = {
+            name: [one for one in self._spec.controllers if self._slot(one) == name] for name in self._spec.driving
+        }
         choices = [*product(*slots.values())]
         if len(choices) > MOST_WIRINGS:
             choices = [tuple(self._spec.driving.values())]

@@ -53,6 +53,7 @@ export class FileBench {
     this.pending = events.map((event) => ({ ...event }));
     this.running = new Set(running);
     this.arrays.link(this.running);
+    for (const entry of this.document.log) this.note(entry, entry.tick);
   }
 
   /** Run ticks; fewer when the board trips. */

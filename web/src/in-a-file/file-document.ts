@@ -137,6 +137,8 @@ export interface FileDocument {
   sensors: { all: string[]; measuring: string };
   controllers: Record<string, string>;
   events: FileEvent[];
+  /** What was done before the first tick. */
+  log: Omit<FileEntry, "seq">[];
 }
 
 export type FileEntry = Pick<LogEntry, "seq" | "tick" | "actor" | "kind" | "text" | "old" | "new"> & {
