@@ -71,7 +71,7 @@ def _knob(scenario: Scenario, path: str, is_fitted: bool) -> Knob | None:
     card, value, fault = _card(scenario, head, leaf)
     if isinstance(value, bool) or not isinstance(value, int | float) or (card and card.type != "number"):
         return None
-    low, high, is_log = _range(leaf, float(value), card)
+    low, high, is_log = usual_range(leaf, float(value), card)
     if not low < high:
         return None
     return Knob(
@@ -118,7 +118,7 @@ def _at(document: Document, path: str) -> Any:
     return found
 
 
-def _range(leaf: str, value: float, card: ParameterCard | None) -> tuple[float, float, bool]:
+def usual_range(leaf: str, value: float, card: ParameterCard | None) -> tuple[float, float, bool]:
     """Return the range around a value, within the allowed limits."""
     least = card.minimum if card is not None and card.minimum is not None else -1e300
     most = card.maximum if card is not None and card.maximum is not None else 1e300

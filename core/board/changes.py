@@ -48,7 +48,7 @@ class ChangeableBoard(Protocol):
 def check(spec: Spec, command: Command) -> None:
     """Refuse a command for later that could never be carried out on a bench."""
     if isinstance(command, Inject):
-        _fault_params(spec, command, 0)
+        fault_params(spec, command, 0)
     elif isinstance(command, HealFaults):
         _names(spec, command)
     elif isinstance(command, SetValues):
@@ -75,7 +75,7 @@ def carry_out(board: ChangeableBoard, command: Command) -> tuple[Any, Any]:
 
 def inject(board: ChangeableBoard, command: Inject) -> tuple[Any, Any]:
     """Put a fault on the device from this tick on."""
-    params = _fault_params(board.spec, command, board.tick)
+    params = fault_params(board.spec, command, board.tick)
     current = board.spec.faults.get(command.fault)
     old, new = current.model_dump() if current is not None else None, params.model_dump()
     if old is not None and {**old, "start_tick": board.tick} == new:
@@ -207,7 +207,7 @@ def _names(spec: Spec, command: HealFaults) -> list[str]:
     return list(command.heal)
 
 
-def _fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
+def fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
     block = spec.library.block("faults", command.fault, "fault")
     reason = misfit(block, spec.plant.block)
     if reason:

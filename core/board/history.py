@@ -68,7 +68,7 @@ def _adopt(
 
 
 @kernel
-def _columns(
+def cut(
     ring: Any,
     low: Any,
     high: Any,
@@ -238,17 +238,17 @@ class History:
     def columns(self, signals: list[int], start: int, stop: int, columns: int) -> Float32Array:
         """Return minima and maxima, shape (signals, 2, columns); NaN where there is no data."""
         out = np.empty((len(signals), 2, columns), dtype=np.float32)
-        _columns(*self.rings, *self._at(signals), self.first_tick, self.end_tick, start, stop, out)
+        cut(*self.rings, *self.places(signals), self.first_tick, self.end_tick, start, stop, out)
         return out
 
     def read(self, signals: list[int] | IntArray, start: int, stop: int) -> Float32Array:
         """Return full-rate values, shape (signals, ticks); the span is cut to the ticks kept."""
         start, stop = max(start, self.first_tick), min(stop, self.end_tick)
         found: Float32Array = np.empty((len(signals), max(stop - start, 0)), dtype=np.float32)
-        _read(self._ring, *self._at(signals), start, found)
+        _read(self._ring, *self.places(signals), start, found)
         return found
 
-    def _at(self, signals: list[int] | IntArray) -> tuple[IntArray, IntArray]:
+    def places(self, signals: list[int] | IntArray) -> tuple[IntArray, IntArray]:
         """Return group and lane of signals."""
         return self._groups[signals], self._lanes[signals]
 

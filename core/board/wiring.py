@@ -126,12 +126,15 @@ class Wiring:
             if len(state):
                 context = spec.context(instance.every, instance.axis)
                 state[:] = instance.block.initial(instance.params, context)
-            if row not in self.places:
-                self.places[row] = self._places(instance)
-            self.w[self.places[row]] = 0.0
+            self.w[self.signals_of_row(row)] = 0.0
+
+    def signals_of_row(self, row: int) -> IntArray:
+        """Return the places of the signals of a row."""
+        if row not in self.places:
+            self.places[row] = self._places(self.instances[row])
+        return self.places[row]
 
     def _places(self, instance: Instance) -> IntArray:
-        """Return the places of the signals of an instance."""
         found: list[int] = []
         for port in (*instance.block.outputs, *instance.block.taps):
             start = self.index[signal_name(instance, port.name)]

@@ -8,32 +8,21 @@ from __future__ import annotations
 
 import inspect
 import sys
-from functools import cache
-from typing import Any
 
 import llvmlite
-import llvmlite.binding as llvm
 
 from core.block import Block
 from core.compile.code import hash_of, instructions
 from core.compile.numbers import NAME
 from core.errors import InputError
 from core.kernel_cache import get, put
-
-TARGET = "wasm32-unknown-unknown"
-FEATURES = "+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals"
-ALIGNMENT = 64
+from core.wasm import target
 
 OFFERED = f"""
 declare void @{NAME}(ptr, ptr, ptr, ptr)
 define void @offered(ptr %p, ptr %s, ptr %w, ptr %io) "wasm-export-name"="step" {{
   call void @{NAME}(ptr %p, ptr %s, ptr %w, ptr %io)
   ret void
-}}
-"""
-ROOM = """
-define i32 @room() "wasm-export-name"="room" {{
-  ret i32 {free}
 }}
 """
 
@@ -56,42 +45,15 @@ def compiled(text: str) -> bytes:
     InputError
         When they call a function that is not among them.
     """
-    machine = _machine()
-    module = _aimed(text, machine)
-    module.link_in(_aimed(OFFERED, machine))
-    for one in (*module.global_variables, *module.functions):
-        if not one.is_declaration and one.name != "offered":
-            one.linkage = "internal"  # functions without a caller are left out
-    tuning = llvm.create_pipeline_tuning_options(speed_level=2)
-    tuning.loop_vectorization = tuning.slp_vectorization = False
-    passes = llvm.create_pass_builder(machine, tuning)
-    passes.getModulePassManager().run(module, passes)
-    for one in module.functions:
-        if one.is_declaration and not one.name.startswith("llvm."):
-            raise InputError(f"calls {one.name}, which is not there behind the wall")
-    sizes = [machine.target_data.get_abi_size(one.global_value_type) for one in module.global_variables]
-    free = sum(size + ALIGNMENT for size in sizes)  # as if before each one a whole step of alignment were lost
-    module.link_in(_aimed(ROOM.format(free=-(-free // ALIGNMENT) * ALIGNMENT), machine))
-    module.verify()
-    return bytes(machine.emit_object(module))
-
-
-def _aimed(text: str, machine: Any) -> Any:
-    """Return the module of instructions, for this machine."""
-    module = llvm.parse_assembly(text)
-    module.triple, module.data_layout = machine.triple, str(machine.target_data)
-    return module
-
-
-@cache
-def _machine() -> Any:
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    target = llvm.Target.from_triple(TARGET)
-    return target.create_target_machine(cpu="generic", features=FEATURES, opt=3, reloc="static")
+    module = target.aimed(text)
+    module.link_in(target.aimed(OFFERED))
+    target.improve(module, {"offered"})
+    for name in target.asked_for(module):
+        raise InputError(f"calls {name}, which is not there behind the wall")
+    return target.emitted(module)
 
 
 def name_of(block: type[Block]) -> str:
     """Return the name of a step on the shelf, with a hash of its code, its records and ports, and this compiler."""
-    own = inspect.getsource(sys.modules[__name__])
+    own = inspect.getsource(sys.modules[__name__]), inspect.getsource(target)
     return f"wall-{block.__module__}-{hash_of(block, own, llvmlite.__version__)}"

@@ -24,7 +24,7 @@ from scenarios.run import run as run_scenario
 from server.cli.bench import bench
 from server.cli.benchmark import benchmark
 from server.cli.diagnose import diagnose_file
-from server.cli.export import fmu
+from server.cli.export import export, fmu
 from server.cli.games import game
 from server.cli.instrument import instrument
 from server.cli.lessons import lectures, sheets
@@ -60,6 +60,7 @@ app.command()(replay)
 app.command("diagnose")(diagnose_file)
 app.command()(instrument)
 app.command()(fmu)
+app.command()(export)
 app.command()(bench)
 app.command()(benchmark)
 app.command()(lectures)

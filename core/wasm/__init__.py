@@ -1,0 +1,1 @@
+"""WebAssembly of kernels and steps: the instructions of machine code, for a browser or behind a wall."""

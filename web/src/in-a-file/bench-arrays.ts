@@ -1,0 +1,124 @@
+import type { FileDocument } from "./file-document";
+import { type Placed, WasmRoom } from "./wasm-room";
+
+/** Most signals and columns of one picture. */
+const SIGNALS = 64;
+const COLUMNS = 4096;
+/** Most conditions that are watched at a time. */
+const WATCHES = 256;
+const SPARE = 1 << 20;
+
+/** The arrays of a bench in the memory of its code, and the kernels over them. */
+export class BenchArrays {
+  readonly p: Placed<Float64Array>;
+  readonly s: Placed<Float64Array>;
+  readonly w: Placed<Float64Array>;
+  readonly io: Placed<BigInt64Array>;
+  readonly folds: Placed<BigUint64Array>;
+  /** The numbers that the followed signals had last. */
+  readonly last: Placed<Float64Array>;
+  private readonly room: WasmRoom;
+  private readonly document: FileDocument;
+  private readonly table: Placed<BigInt64Array>;
+  private readonly watches: Placed<Float64Array>;
+  private readonly followed: Placed<BigInt64Array>;
+  private readonly rings: Placed[];
+  private readonly resting: Placed<Uint8Array>;
+  private readonly groups: Placed<BigInt64Array>;
+  private readonly places: Placed<BigInt64Array>;
+  private readonly picture: Placed<Float32Array>;
+  private readonly owners: Placed<BigInt64Array>;
+  private readonly words: Placed<BigUint64Array>;
+  private rows = 0;
+
+  private constructor(room: WasmRoom, document: FileDocument) {
+    const { arrays, followed, history, outputs } = document;
+    this.room = room;
+    this.document = document;
+    this.p = room.put(arrays.p);
+    this.s = room.put(arrays.s);
+    this.w = room.put(arrays.w);
+    this.io = room.put(arrays.io);
+    this.folds = room.put(document.folds, [2, outputs]);
+    this.last = room.put(followed.last);
+    this.table = room.put(arrays.table);
+    this.watches = room.place(Float64Array, [WATCHES, 3]);
+    this.followed = room.put(followed.columns);
+    const rings = [history.ring, history.buckets, history.buckets].map((of) => room.place(Float32Array, of));
+    this.rings = [...rings, room.put(history.offsets), room.put(history.sizes)];
+    this.resting = room.place(Uint8Array, [history.ring[0]]);
+    this.groups = room.place(BigInt64Array, [SIGNALS]);
+    this.places = room.place(BigInt64Array, [SIGNALS]);
+    this.picture = room.place(Float32Array, [SIGNALS, 2, COLUMNS]);
+    this.owners = room.place(BigInt64Array, [outputs]);
+    this.words = room.place(BigUint64Array, [document.rows.length, 2]);
+  }
+
+  static async load(code: BufferSource, document: FileDocument): Promise<BenchArrays> {
+    const { arrays, folds, history } = document;
+    const numbers = Object.values(arrays).reduce((sum, one) => sum + one.length, folds.length + 3 * WATCHES);
+    const rings = history.ring[0] * history.ring[1] + 2 * history.buckets[0] * history.buckets[1];
+    const bytes = 8 * numbers + 4 * (rings + 2 * SIGNALS * COLUMNS) + SPARE;
+    return new BenchArrays(await WasmRoom.load(code, bytes), document);
+  }
+
+  /** All arrays as they are before the first tick. */
+  reset(): void {
+    const { arrays, folds, followed } = this.document;
+    this.p.view.set(arrays.p);
+    this.s.view.set(arrays.s);
+    this.w.view.set(arrays.w);
+    this.io.view.set(arrays.io);
+    this.folds.view.set(folds);
+    this.last.view.set(followed.last);
+  }
+
+  /** Run these rows from now on, in their order. */
+  link(running: ReadonlySet<number>): void {
+    const { table } = this.document.arrays;
+    const columns = table.length / this.document.rows.length;
+    const rows = [...running].sort((a, b) => a - b);
+    for (const [i, row] of rows.entries())
+      this.table.view.set(table.subarray(columns * row, columns * (row + 1)), columns * i);
+    this.rows = rows.length;
+    this.table.lengths = [rows.length, columns];
+  }
+
+  /** Run up to `n` ticks; how many were run, and why the loop returned. */
+  run(n: number, tick: number, watches: readonly number[][]): { ran: number; why: number } {
+    const { dt_ms, signals, outputs, trip } = this.document;
+    if (this.rows === 0) return { ran: n, why: 0 };
+    this.watches.view.set(watches.flat());
+    this.watches.lengths = [watches.length, 3];
+    const board = [this.table, this.p, this.s, this.w, this.io, signals.length - outputs, this.folds, trip];
+    const followed = [this.watches, this.followed, this.last];
+    const [ran, why] = this.room.call("run", n, tick, dt_ms, ...board, ...followed, ...this.rings, this.resting);
+    return { ran, why };
+  }
+
+  /** Least and largest values of signals in each column: [signal][least, largest][column]. */
+  cut(signals: readonly number[], kept: [number, number], span: [number, number], columns: number): Float32Array {
+    const { history } = this.document;
+    const count = Math.min(columns, COLUMNS);
+    for (const [k, signal] of signals.entries()) {
+      this.groups.view[k] = history.groups[signal];
+      this.places.view[k] = history.places[signal];
+    }
+    this.groups.lengths = [signals.length];
+    this.places.lengths = [signals.length];
+    this.picture.lengths = [signals.length, 2, count];
+    this.room.call("cut", ...this.rings, this.groups, this.places, ...kept, ...span, this.picture);
+    return this.picture.view.slice(0, signals.length * 2 * count);
+  }
+
+  /** The two words of each of these blocks, by which its outputs are known. */
+  joined(blocks: readonly string[]): BigUint64Array {
+    const { fold } = this.document;
+    for (const [column, block] of this.document.blocks.entries())
+      this.owners.view[column] = BigInt(blocks.indexOf(block));
+    for (const k of blocks.keys()) this.words.view.set(fold, 2 * k);
+    this.words.lengths = [blocks.length, 2];
+    this.room.call("join", this.folds, this.owners, this.words);
+    return this.words.view.slice(0, 2 * blocks.length);
+  }
+}

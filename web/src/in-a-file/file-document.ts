@@ -1,0 +1,146 @@
+import type { LogEntry } from "../api/types";
+
+/** What the numbers at some places become with a value: its multiples, or the numbers at the points of a grid. */
+export interface Dependence {
+  places: BigInt64Array;
+  factors?: Float64Array;
+  grid?: number[];
+  /** For each point of the grid the numbers of all places. */
+  numbers?: Float64Array;
+}
+
+interface FaultVariant {
+  parameters: { profile: { kind: string }; parameters: Record<string, unknown> };
+  dependence: Dependence;
+  /** The packed numbers of the suggested severity, from tick 0 on. */
+  packed: Float64Array;
+}
+
+export interface FileFault {
+  row: number;
+  title: string;
+  group: string;
+  unit: string;
+  suggested: number;
+  minimum: number | null;
+  maximum: number | null;
+  low: number;
+  high: number;
+  /** Among its numbers the tick at which it begins; -1 for none. */
+  start: number;
+  absent: Float64Array;
+  variants: FaultVariant[];
+}
+
+export interface FileValue {
+  label: string;
+  unit: string;
+  value: number;
+  low: number;
+  high: number;
+  dependence: Dependence;
+}
+
+interface WiringWrites<Numbers> {
+  places: BigInt64Array;
+  numbers: Record<string, Numbers>;
+}
+
+export type FileCommand =
+  | { fault: string; severity: number; variant?: number }
+  | { heal: string[] | "all" }
+  | { switch: string; cold?: boolean }
+  | { set: Record<string, number> }
+  | { reset_trip: true };
+
+export interface FileEvent {
+  /** The tick it waits for, or from which on its condition is watched; none for a condition from the start. */
+  tick: number | null;
+  command: FileCommand;
+  /** The place of a signal, 1 for above or -1 for below, and the threshold. */
+  when?: [number, number, number];
+}
+
+export interface Told {
+  kind: string;
+  diagnoser?: string;
+  words?: string[];
+  text?: string;
+  left?: number[];
+  columns?: number[];
+}
+
+interface FileRow {
+  key: string;
+  prefix: string;
+  p: [number, number];
+  s: [number, number];
+  /** The places of its signals. */
+  w: number[];
+}
+
+export interface FileDiagnoser {
+  kind: string;
+  title: string;
+  scored: boolean;
+  names: string[];
+  factors: Record<string, number>[];
+}
+
+/** All that a bench in a file knows besides its code. */
+export interface FileDocument {
+  id: string;
+  title: string;
+  summary: string;
+  absent: string;
+  version: string;
+  dt_ms: number;
+  seed: number;
+  arrays: { table: BigInt64Array; p: Float64Array; s: Float64Array; w: Float64Array; io: BigInt64Array };
+  running: number[];
+  rows: FileRow[];
+  endless: BigInt64Array;
+  folds: BigUint64Array;
+  fold: BigUint64Array;
+  history: {
+    lanes: number;
+    widest: number;
+    capacity: number;
+    offsets: BigInt64Array;
+    sizes: BigInt64Array;
+    groups: BigInt64Array;
+    places: BigInt64Array;
+    ring: [number, number];
+    buckets: [number, number];
+  };
+  look_every: number;
+  reasons: { tripped: number; watched: number; changed: number };
+  outputs: number;
+  reserved: number;
+  signals: { name: string; unit: string; meaning: string }[];
+  blocks: string[];
+  trip: number;
+  guards: number[];
+  trip_reasons: Record<string, string>;
+  disengaged: number[];
+  followed: { columns: BigInt64Array; last: Float64Array; told: Told[] };
+  diagnosers: Record<string, FileDiagnoser>;
+  faults: Record<string, FileFault>;
+  /** The faults that act from the first tick on. */
+  present: Record<string, { severity: number; variant: number; since: number }>;
+  wirings: {
+    slots: Record<string, string>;
+    driving: Record<string, string>;
+    writes: { p: WiringWrites<Float64Array>; io: WiringWrites<BigInt64Array>; w: WiringWrites<Float64Array> };
+  };
+  values: Record<string, FileValue>;
+  sensors: { all: string[]; measuring: string };
+  controllers: Record<string, string>;
+  events: FileEvent[];
+  /** What was done before the first tick. */
+  log: Omit<FileEntry, "seq">[];
+}
+
+export type FileEntry = Pick<LogEntry, "seq" | "tick" | "actor" | "kind" | "text" | "old" | "new"> & {
+  command?: FileCommand;
+};

@@ -1,0 +1,122 @@
+import "../ui/theme.css";
+import "./in-a-file.css";
+import { hover } from "../ui/hover";
+import type { Scheme } from "../ui/palette";
+import { teachWords } from "./bench-words";
+import { ControllerChoice } from "./controller-choice";
+import { element } from "./dom";
+import { EventList } from "./event-list";
+import { FaultList } from "./fault-list";
+import { FileBench } from "./file-bench";
+import type { FileDocument } from "./file-document";
+import { LanesView } from "./lanes-view";
+import { Pace } from "./pace";
+import { bytesOf, unpacked } from "./pack";
+import { RunBar } from "./run-bar";
+import { ScopeView } from "./scope-view";
+import { TimeWindow } from "./time-window";
+import { ValueList } from "./value-list";
+
+/** As the page: device time per wall time at first, slower than any eye would need without a pause. */
+const USUAL_SCALE = 0.002;
+const USUAL_TICKS = 2000;
+const WORDS_MS = 200;
+const NOTICE_MS = 6000;
+
+const textOf = (id: string) => document.getElementById(id)?.textContent ?? "";
+
+async function show(): Promise<void> {
+  const bench = await FileBench.load(
+    await bytesOf(textOf("code")),
+    unpacked<FileDocument>(await bytesOf(textOf("pack"))),
+  );
+  const { title, summary, absent, dt_ms: dtMs, diagnosers, version } = bench.document;
+  teachWords(bench.document);
+  const pace = new Pace(dtMs, USUAL_SCALE);
+  const time = new TimeWindow(bench, windowOf(dtMs));
+  const notice = element("p", { className: "notice", role: "alert" });
+  let isDirty = true;
+  let noticed: ReturnType<typeof setTimeout> | undefined;
+  const act = (what: () => void) => {
+    try {
+      what();
+      notice.textContent = "";
+    } catch (error) {
+      notice.textContent = (error as Error).message;
+      clearTimeout(noticed);
+      noticed = setTimeout(() => notice.replaceChildren(), NOTICE_MS);
+    }
+    isDirty = true;
+    tellAll();
+  };
+  const bar = new RunBar(bench, pace, time, act);
+  const scopes = [new ScopeView(bench, time, "Displacement"), new ScopeView(bench, time, "Voltage")];
+  const scored = Object.keys(diagnosers).filter((id) => diagnosers[id].scored);
+  const lanes = scored.length > 0 ? new LanesView(bench, time, scored) : undefined;
+  const controllers = new ControllerChoice(bench, act);
+  const faults = new FaultList(bench, act);
+  const values = new ValueList(bench, act);
+  const events = new EventList(bench);
+  const tellAll = () => {
+    for (const part of [bar, controllers, faults, values, events]) part.show();
+  };
+  const head = element("header", {}, element("h1", {}, title), element("p", { className: "note" }, summary));
+  const foot = element("footer", { className: "remark" }, `Computed in this page by CombBench ${version}. ${absent}`);
+  const plots = element("div", { className: "plots" }, ...scopes.map(({ root }) => root), lanes?.root ?? "");
+  const aside = element("aside", {}, ...[controllers, faults, values, events].map(({ root }) => root));
+  document.body.replaceChildren(element("main", {}, head, bar.root, notice, plots, aside, foot));
+
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  let scheme: Scheme = "dark";
+  const dress = () => {
+    scheme = dark.matches ? "dark" : "light";
+    document.documentElement.dataset.mantineColorScheme = scheme;
+    for (const scope of scopes) scope.dress(scheme);
+    isDirty = true;
+  };
+  dark.addEventListener("change", dress);
+  dress();
+  time.listen(() => {
+    isDirty = true;
+  });
+  hover.listen(() => {
+    isDirty = true;
+  });
+  new ResizeObserver(() => {
+    isDirty = true;
+  }).observe(plots);
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.target instanceof HTMLButtonElement || event.target instanceof HTMLSelectElement)
+      return;
+    event.preventDefault();
+    bar.toggle();
+  });
+
+  let told = Number.NEGATIVE_INFINITY;
+  const draw = (now: number) => {
+    const before = bench.tick;
+    pace.run(now, (n) => bench.advance(n));
+    const tells = now - told > WORDS_MS;
+    if (bench.tick !== before || isDirty) {
+      for (const scope of scopes) scope.draw(tells);
+      lanes?.draw(scheme);
+      isDirty = false;
+    }
+    if (tells) {
+      told = now;
+      tellAll();
+    }
+    requestAnimationFrame(draw);
+  };
+  tellAll();
+  requestAnimationFrame(draw);
+}
+
+/** A window of the usual length among those that the menu has. */
+const windowOf = (dtMs: number): number => [4, 10, 20, 50, 100, 200].find((ms) => ms >= USUAL_TICKS * dtMs) ?? 500;
+
+show().catch((error: Error) => {
+  document.body.replaceChildren(
+    element("p", { className: "failed" }, `This browser cannot show the bench: ${error.message}`),
+  );
+});
