@@ -32,7 +32,7 @@ from core.board.walk import Walk
 from core.board.wired import wired
 from core.errors import InputError
 from core.loop.score import Scores
-from core.plant.record import supply
+from core.plant.record import playable, supply
 from core.ports import RESERVED
 from core.signals import SignalTable
 
@@ -190,14 +190,12 @@ class Board:
 
     def _playable(self, n: int) -> int:
         """Return how many of some ticks the plant can play now; at the end of a record the board trips."""
-        record = self.spec.record
-        if record is None:
+        if self.spec.record is None:
             return n
-        is_growing = record.is_growing  # read before the samples: the last samples come before the end
-        left = record.samples - self.tick
-        if left <= 0 < n and not is_growing and self.trip is None:
+        ticks, has_ended = playable(self.spec.record, self.tick, n)
+        if has_ended and self.trip is None:
             self._trip("the record has ended")
-        return min(n, left)
+        return ticks
 
     def _supply(self, n: int) -> None:
         """Give the plant the samples of the next ticks, where it is a record."""
@@ -371,9 +369,8 @@ class Board:
     def checkpoint(self) -> Checkpoint:
         """Return everything the board is at this tick edge."""
         kept = {name: copy.deepcopy(getattr(self, name)) for name in COPIED}
-        shared = {name: getattr(self, name) for name in SHARED}
         lists = {"log": self.log.copy(), "done": list(self.done), "consequences": list(self.consequences)}
-        return Checkpoint(self.tick, type(self), {**kept, **shared, **lists})
+        return Checkpoint(self.tick, type(self), {name: getattr(self, name) for name in SHARED} | kept | lists)
 
     @staticmethod
     def restore(checkpoint: Checkpoint) -> Board:

@@ -208,6 +208,13 @@ def _names(spec: Spec, command: HealFaults) -> list[str]:
 
 
 def fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
+    """Return the parameters of the fault that a command injects at a tick.
+
+    Raises
+    ------
+    InputError
+        For a fault that the plant cannot have, and for parameters that it does not take.
+    """
     block = spec.library.block("faults", command.fault, "fault")
     reason = misfit(block, spec.plant.block)
     if reason:

@@ -76,6 +76,13 @@ class RecordPlant(Block):
             x.missing = 1.0
 
 
+def playable(record: PlayedRecord, tick: int, n: int) -> tuple[int, bool]:
+    """Return how many of some ticks a record can play now, and whether it ended before the first of them."""
+    is_growing = record.is_growing  # read before the samples: the last samples come before the end
+    left = record.samples - tick
+    return min(n, left), left <= 0 < n and not is_growing
+
+
 def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: int) -> None:
     """Put the samples of the next ticks into the state, at most ``WINDOW``: without offset, the voltage delayed."""
     s: Any = RecordPlant.State(state)

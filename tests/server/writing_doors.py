@@ -18,7 +18,7 @@ SWEEP = {"sweep": {"schema": 1, "id": "two", "scenario": "first-look", "set": {"
 
 _HEALTHY = draw(1, samples=2200)
 RECORD = (
-    "time_ms,drive,displacement\n".encode()
+    b"time_ms,drive,displacement\n"
     + "\n".join(
         f"{DT * i},{u},{y}" for i, (u, y) in enumerate(zip(_HEALTHY.drive, _HEALTHY.displacement, strict=True))
     ).encode()

@@ -74,14 +74,19 @@ def test_an_act_that_sets_values_is_told_by_the_title_of_the_controller() -> Non
     ratio = format_short(event.command["set"]["controllers.lqg.mass_ratio"], "", 4)
     assert told is not None and told.last_act is not None
     assert told.last_act.text.startswith(f"sets LQG to mass ×\u00a0{ratio}")
-    assert f"the supervisor {told.last_act.text}, because the estimate of kalman has moved by" in " ".join(sentences(bench))
+    assert f"the supervisor {told.last_act.text}, because the estimate of kalman has moved by" in " ".join(
+        sentences(bench)
+    )
 
 
 @pytest.mark.parametrize(
     ("command", "said"),
     [
         ({"switch": "adrc"}, "switches to Active disturbance rejection (ADRC)"),
-        ({"set": {"controllers.lqg.mass_ratio": 1.05123, "sensor.kind": "ideal"}}, "sets LQG to mass ×\u00a01.051 and "),
+        (
+            {"set": {"controllers.lqg.mass_ratio": 1.05123, "sensor.kind": "ideal"}},
+            "sets LQG to mass ×\u00a01.051 and ",
+        ),
         ({"make_safe": "no hypothesis fits"}, "sets safe outputs"),
         ({"switch": "of_their_own"}, "switches to of_their_own"),
     ],
