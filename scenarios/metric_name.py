@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from core.format import format_figure, format_spread, plain_scale, round_to
 
 NAMES: dict[str, Any] = json.loads((Path(__file__).parent / "metric_names.json").read_text("utf-8"))
-"""Shared with the page: families that need not be said, words for their numbers and for parts of names, units by the ending of a name."""
+"""Shared with the page: families not said, words for their numbers and for parts of names, units by endings."""
 
 
 class MetricScale(NamedTuple):

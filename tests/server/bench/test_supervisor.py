@@ -74,14 +74,19 @@ def test_an_act_that_sets_values_is_told_by_the_title_of_the_controller() -> Non
     ratio = format_short(event.command["set"]["controllers.lqg.mass_ratio"], "", 4)
     assert told is not None and told.last_act is not None
     assert told.last_act.text.startswith(f"sets LQG to mass ×\u00a0{ratio}")
-    assert f"the supervisor {told.last_act.text}, because the estimate of kalman has moved by" in " ".join(sentences(bench))
+    assert f"the supervisor {told.last_act.text}, because the estimate of kalman has moved by" in " ".join(
+        sentences(bench)
+    )
 
 
 @pytest.mark.parametrize(
     ("command", "said"),
     [
         ({"switch": "adrc"}, "switches to Active disturbance rejection (ADRC)"),
-        ({"set": {"controllers.lqg.mass_ratio": 1.05123, "sensor.kind": "ideal"}}, "sets LQG to mass ×\u00a01.051 and "),
+        (
+            {"set": {"controllers.lqg.mass_ratio": 1.05123, "sensor.kind": "ideal"}},
+            "sets LQG to mass ×\u00a01.051 and ",
+        ),
         ({"make_safe": "no hypothesis fits"}, "sets safe outputs"),
         ({"switch": "of_their_own"}, "switches to of_their_own"),
     ],
@@ -168,7 +173,7 @@ def test_its_parameters_are_set_live_and_from_outside(live: Any) -> None:
     assert live.command(bench["id"], set={"supervisor.hold_ms": 1.0}).status_code == 200
     live.command(bench["id"], "step", ticks=1500)
     status = live.get(bench["id"])
-    assert status["supervisor"]["last_act"]["text"] == "switch to pid" and status["controller"] == "pid"
+    assert status["supervisor"]["last_act"]["text"] == "switches to PID" and status["controller"] == "pid"
     # its past, another branch of it and the moment itself have the acts of the straight run
     for tick in (1000, 300, 1500):
         made = live.http.post(f"/api/v1/benches/{bench['id']}/fork", json={"tick": tick, "paused": True}).json()
