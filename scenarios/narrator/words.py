@@ -14,7 +14,7 @@ from core.format import MINUS, format_short, format_si
 NOUNS = {"gain": "drive gain", "second_stiffness": "stiffness along y"}
 """Factors with an unclear name."""
 RATIO, TIMES = "_ratio", "×\u00a0"
-"""A value over that of the nominal device: the damping ratio of an oscillator is another quantity."""
+"""A value over the nominal value: the damping ratio of an oscillator is another quantity."""
 
 
 def moment(ms: float) -> str:

@@ -32,7 +32,7 @@ test("a supervisor changes the controller for a fault and back, and says its ver
   const controller = page.getByRole("combobox", { name: "Controller" }).first();
   await server.advanceTicks(bench, 500);
   await expect(controller).toHaveValue("LQG");
-  await expect(page.getByText("The supervisor changes the controller by what the diagnosis finds")).toBeAttached();
+  await expect(page.getByText("The supervisor changes the controller by the verdict of the diagnosis")).toBeAttached();
   await front(page, "Controller");
   const supervisor = page.getByRole("group", { name: "Supervisor" });
   await expect(supervisor).toContainText(/kalman has named healthy for [\d.]+\sms/);

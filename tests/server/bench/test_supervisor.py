@@ -173,7 +173,7 @@ def test_its_parameters_are_set_live_and_from_outside(live: Any) -> None:
     assert live.command(bench["id"], set={"supervisor.hold_ms": 1.0}).status_code == 200
     live.command(bench["id"], "step", ticks=1500)
     status = live.get(bench["id"])
-    assert status["supervisor"]["last_act"]["text"] == "switch to pid" and status["controller"] == "pid"
+    assert status["supervisor"]["last_act"]["text"] == "switches to PID" and status["controller"] == "pid"
     # its past, another branch of it and the moment itself have the acts of the straight run
     for tick in (1000, 300, 1500):
         made = live.http.post(f"/api/v1/benches/{bench['id']}/fork", json={"tick": tick, "paused": True}).json()

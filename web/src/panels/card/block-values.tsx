@@ -26,7 +26,8 @@ export function TitledValues({ ids }: { ids: readonly string[] }) {
   const blocks = ids.flatMap((id) => {
     const instance = list.find((one) => one.id === id);
     const found = instance && block(instance.family, instance.name);
-    return found?.parameters.length ? [{ title: found.title, instance, parameters: found.parameters }] : [];
+    if (!instance || !found || found.parameters.length === 0) return [];
+    return [{ title: found.title, instance, parameters: found.parameters }];
   });
   if (!parameters || blocks.length === 0) return null;
   return (

@@ -79,7 +79,7 @@ export interface Wire {
   d: string;
   label: string;
   at: [number, number];
-  /** What it is, for a path that carries no signal: acts of the supervisor. */
+  /** The meaning of a path without a signal, along which a supervisor acts. */
   acts?: string;
 }
 

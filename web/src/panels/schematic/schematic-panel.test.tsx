@@ -116,7 +116,7 @@ it("marks the drive and the sensor whose stages of the board act, and says how",
 it("draws the way of a supervisor to the controller it changes, and none of one that stops the board", async () => {
   const supervised = (kind: string) => ({ ...bench, parameters: { ...bench.parameters, supervisor: { kind } } });
   const { board } = await mountPanel(supervised("retuning"));
-  const words = "The supervisor changes the controller by what the diagnosis finds";
+  const words = "The supervisor changes the controller by the verdict of the diagnosis";
   expect(within(loop()).getByText(words, { selector: "title" }).parentElement).toHaveTextContent(/acts$/);
   board.status({ parameters: supervised("shutdown").parameters });
   expect(within(loop()).queryByText(words)).not.toBeInTheDocument();

@@ -10,7 +10,7 @@ export interface Parts {
   light: string;
   hasDiagnoser: boolean;
   hasIdentifier: boolean;
-  /** Whether a supervisor changes the controller by what the diagnoser finds. */
+  /** Whether a supervisor changes the controller by the verdict of the diagnoser. */
   isSupervised: boolean;
 }
 
@@ -79,7 +79,7 @@ const ACTS: Wire = {
   d: "M90 90 V82 H132 V58",
   label: "acts",
   at: [139, 70],
-  acts: "The supervisor changes the controller by what the diagnosis finds",
+  acts: "The supervisor changes the controller by the verdict of the diagnosis",
 };
 
 const PLAIN: Structure = { boxes: LOOP, extra: [], wires: WIRES, hasRoom: true };
