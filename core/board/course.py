@@ -1,4 +1,4 @@
-"""Course: what the waiting commands of boards abreast change at each of their ticks, worked out once."""
+"""Course: the changes that the waiting commands of boards abreast make at each of their ticks, worked out once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.board.pending import PendingQueue
 
 
 class ChangedRow(NamedTuple):
-    """A row of the table after commands: its numbers, and the facts of the bench of which they are made."""
+    """A row of the table after commands, with its numbers and the facts of the bench behind these."""
 
     number: int
     instance: Instance
@@ -24,7 +24,7 @@ class ChangedRow(NamedTuple):
 
 
 class CourseStep(NamedTuple):
-    """What the commands of one tick change: the faults that act from now on, and the rows."""
+    """The changes of the commands of one tick: the faults that act from now on, and the rows."""
 
     faults: dict[str, BlockParams]
     commands: list[tuple[int, Command]]

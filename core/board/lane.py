@@ -37,7 +37,7 @@ class Lane(Board):
     pending : Queue
         The commands that wait.
     course : Course
-        What the commands change, as far as it is known.
+        The changes that the commands make, as far as they are known.
     leader : Lane, optional
         The lane it follows.
     """
@@ -91,7 +91,7 @@ class Lane(Board):
                 lane._take(row)
 
     def _carry_out(self) -> CourseStep:
-        """Carry out the commands due here; note what they change, if all of them are for faults and none is refused."""
+        """Carry out the commands due here; note the changes, if all commands are for faults and none is refused."""
         before, done, waiting = self.wiring.instances, len(self.done), len([*self.pending])
         self.apply_due()
         commands, now = self.done[done:], self.wiring.instances

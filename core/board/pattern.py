@@ -59,7 +59,7 @@ class Pattern:
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
         self._addresses: dict[int, int] = {}
         self.courses = Courses()
-        """What the commands of boards change, worked out once."""
+        """The changes that the commands of boards make, worked out once."""
 
     def address(self, row: int) -> int:
         """Return the address of the step of a row, for all boards."""

@@ -14,7 +14,7 @@ from core.board.spec import Spec
 from core.board.wiring import Wiring, wire
 
 MOST = 8
-"""Benches of which the wiring is kept, 0.1 MB each."""
+"""Benches whose wiring is kept, 0.1 MB each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ def wired(spec: Spec) -> Wiring:
         like = next((one for one in _last if _is_like(one.spec, spec)), None)
     wiring = None if like is None else _again(like, spec)
     if wiring is None:
-        read: list[set[str]] | None = None if like is None else []  # of a bench alone nobody asks for them
+        read: list[set[str]] | None = None if like is None else []  # a bench that comes once needs none
         wiring = wire(spec, read=read)
         with _lock:
             if like is not None and like in _last:

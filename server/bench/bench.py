@@ -40,10 +40,7 @@ if TYPE_CHECKING:
     from server.bench.replay import TickSource
 
 SLICE_S = 0.002
-"""Longest slice, by the time of a tick; other benches and commands wait for it.
-
-Each slice costs a tenth of a millisecond beside its ticks, so a bench has the ticks of a round in one, if it can.
-"""
+"""Longest slice, by the time of a tick; others wait for it. One costs 0.1 ms beside its ticks: a round is best one."""
 MOST_SLOWER = 4.0
 """Most by which the estimated time of a tick grows at once: a longer tick has waited for a processor."""
 
