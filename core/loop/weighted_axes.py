@@ -26,7 +26,7 @@ class WeightedAxes(Block):
     Each model estimates a rate of its own; their weighted sum is the rate that the bank measures, whatever the fault.
     The variance of a model is :math:`P_k=P_{0,k}+V_kM_kV_k^T`, the steady covariance for a known rate and the doubt of
     the rate (`core.diagnose.axes_filter`). Models that are far from the true one count with the smallest probability: a
-    floor of 1e-6 makes the standard deviation of x five times the error on gyro-a.
+    floor of 1e-6 makes the standard deviation of x five times the error where the quality factor is 2000.
 
     The block also counts errors against the true motion, rate and parameters. In each stretch with one true hypothesis
     the squares of both displacements together are compared with the best model among the false ones.

@@ -21,8 +21,8 @@ class WeightedFilters(Block):
 
     .. math:: \hat x=\sum_kp_k\hat x_k,\qquad P=\sum_kp_k\left[P_k+(\hat x_k-\hat x)(\hat x_k-\hat x)^T\right]
 
-    The weighted value of the parameter that is followed is the estimate of the bank; the others are nominal. No filter
-    is a hypothesis about the device, so the errors are not compared with the errors of a false model.
+    The weighted value of the parameter that is followed is the estimate of the bank; the others are nominal. The
+    filters are no hypotheses about the device, and there is no false model for a comparison of the errors.
     """
 
     title = "Weighted filters"

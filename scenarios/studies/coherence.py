@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Coherence(Study):
-    """Runs each law on several resonators, which differ from the one that the law knows, under the same reference.
+    """Runs each law on several resonators under one reference; they differ from the design, which is all the law knows.
 
     ``coherence.<law>.difference_um`` is the rms of the difference between two displacements in the last half of the
     run, of the two resonators that are farthest apart, and ``.settling_ms`` the last moment at which any two differed
