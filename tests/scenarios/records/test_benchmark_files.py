@@ -148,3 +148,50 @@ def test_the_command_exports_once_and_marks_rows_from_outside(
     assert nowhere.exit_code == 2 and "has no folder of a track" in nowhere.stderr
     both = call("--export", "a", "--answers", "b")
     assert both.exit_code == 2 and "goes with --track and --seeds alone" in both.stderr
+
+
+def filterpy_answers(table: Any) -> dict[str, np.ndarray]:
+    """Return the probabilities of filterpy's bank, from nothing but a file: models by the matrix exponential."""
+    from filterpy.kalman import KalmanFilter, MMAEFilterBank
+    from scipy.linalg import expm
+
+    about = json.loads(table.schema.metadata[b"combbench"])
+    drive, measured = table["drive"].to_numpy(), table["displacement"].to_numpy()
+    filters = []
+    for hypothesis in about["hypotheses"]:
+        m, b, k = (
+            about["device"][key] * hypothesis.get(name, 1.0)
+            for key, name in (("mass_mg", "mass"), ("damping_un_ms_um", "damping"), ("stiffness_un_um", "stiffness"))
+        )
+        whole = np.array([[0.0, 1.0, 0.0], [-k / m, -b / m, about["device"]["force_un_v"] / m], [0.0, 0.0, 0.0]])
+        step = expm(whole * about["dt_ms"])
+        one = KalmanFilter(dim_x=2, dim_z=1, dim_u=1)
+        one.F, one.B, one.H = step[:2, :2], step[:2, 2:], np.array([[1.0, 0.0]])
+        one.Q, one.R = one.B @ one.B.T * 0.3**2, np.array([[about["noise_um"] ** 2]])
+        one.x, one.P = np.zeros((2, 1)), np.diag([1.0, k / m * 1e-6])
+        filters.append(one)
+    n, floor = len(filters), 1e-3
+    bank = MMAEFilterBank(filters, [1.0 / n] * n, dim_x=2, H=filters[0].H)
+    found = np.empty((len(measured), n))
+    for i, value in enumerate(measured.tolist()):
+        if i:
+            bank.predict(u=np.array([[drive[i - 1]]]))
+        bank.update(np.array([[value]]))
+        bank.p = np.maximum(np.nan_to_num(bank.p, nan=floor), floor)
+        bank.p /= bank.p.sum()
+        found[i] = bank.p
+    return {hypothesis["name"]: found[:, i] for i, hypothesis in enumerate(about["hypotheses"])}
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+def test_the_bank_of_filterpy_scores_as_the_bank_of_the_library(public: Path, few: SeedList, tmp_path: Path) -> None:
+    (tmp_path / "filterpy" / TRACK).mkdir(parents=True)
+    for file in public.glob("*.parquet"):
+        np.savez(tmp_path / "filterpy" / TRACK / f"{file.stem}.npz", **filterpy_answers(pq.read_table(file)))  # type: ignore[arg-type]
+    (row,) = score_answers(tmp_path / "filterpy", [TRACK], few, told).rows
+    (expected,) = measure(["mmae"], [TRACK], few).rows
+    for name in ("log_score", "brier"):
+        found, other = getattr(row, name), getattr(expected, name)
+        print(name, found.mean, other.mean)
+        assert abs(found.mean - other.mean) < 0.005
