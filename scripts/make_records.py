@@ -108,7 +108,8 @@ def lines(name: str) -> list[str]:
     """Return the lines of a record."""
     whole, faults, lost = RECORDS[name]
     chance = random.Random(name)
-    state, found = (0.0, 0.0, 0.0, 0.0), ["time_ms,drive (V),displacement (um),label"]
+    state: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    found = ["time_ms,drive (V),displacement (um),label"]
     for sample in range(SAMPLES):
         fault = next((one for one in reversed(faults) if sample >= one.first), None)
         device = fault.change(whole) if fault else whole

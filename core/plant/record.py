@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar
 
 import numpy as np
@@ -48,6 +47,7 @@ class RecordPlant(Block):
         first: float
         drive: Vector = vector(WINDOW)
         displacement: Vector = vector(WINDOW)
+        missing: Vector = vector(WINDOW)
         label: Vector = vector(WINDOW)
 
     class Ports(BlockPorts):
@@ -68,12 +68,9 @@ class RecordPlant(Block):
         i = int(x.tick - s.first)
         x.drive = s.drive[i]
         x.label = s.label[i]
-        y = s.displacement[i]
-        if math.isfinite(y):
-            x.displacement = y
-            x.missing = 0.0
-        else:
-            x.missing = 1.0
+        x.missing = s.missing[i]
+        if x.missing == 0.0:
+            x.displacement = s.displacement[i]
 
 
 def playable(record: PlayedRecord, tick: int, n: int) -> tuple[int, bool]:
@@ -91,7 +88,10 @@ def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: i
     start = max(tick - int(params.delay_samples) - 1, 0)
     drive, displacement, label = record.stretch(start, end)
     s.drive[:count] = delayed(drive, params.delay_samples, tick - start, end - start)
-    s.displacement[:count] = displacement[tick - start :]
+    found = displacement[tick - start :]
+    lost = ~np.isfinite(found)
+    s.missing[:count] = lost
+    s.displacement[:count] = np.where(lost, 0.0, found)  # a board whose state is not finite stops
     if params.offset_um != 0.0:
         s.displacement[:count] -= params.offset_um
     s.label[:count] = UNLABELLED if label is None else label[tick - start :]

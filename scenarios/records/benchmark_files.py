@@ -1,7 +1,7 @@
 """The benchmark as files: its cases for tools of any kind, and the answers of such tools, scored.
 
-All files of a list are alike in length, columns and description, so a file of the hidden list tells nothing of its
-fault but what was measured.
+All files of a list are alike in length, columns and description, so a file of the hidden list has the measured samples
+and no other trace of its fault.
 """
 
 from __future__ import annotations

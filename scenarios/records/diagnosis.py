@@ -14,6 +14,7 @@ from core.board.board import Board
 from core.board.instances import scored
 from core.board.rows import Rows
 from core.diagnose.hypothesis import ModelList, names_of
+from core.errors import InputError
 from core.format import format_percent
 from core.measured_record import MeasuredRecord
 from core.signals import Signal
@@ -31,7 +32,7 @@ UNSURE = "unsure"
 MOST_UNEXPLAINED = 0.2
 """Share of unexplained samples from which a record counts as unexplained."""
 Outcome = Literal["no fault", "fault", "unexplained", "refused"]
-"""What a diagnosis comes to; of several banks the worst counts."""
+"""Outcomes of a diagnosis; of several banks the worst counts."""
 SHORTEST = 20
 """Samples a verdict must last to be listed by itself."""
 
@@ -70,7 +71,7 @@ class RecordDiagnosis:
 
     @property
     def outcome(self) -> Outcome:
-        """What the diagnosis comes to."""
+        """The outcome; of several banks the worst counts."""
         if self.refusal:
             return "refused"
         if any(shares.get(UNEXPLAINED, 0.0) >= MOST_UNEXPLAINED for shares in self.shares.values()):
@@ -128,6 +129,8 @@ def diagnose(
     banks = {name: section.params for name, section in bench.spec.diagnosers.items() if scored(section.block)}
     gathered = _Unexplained(banks)
     result = run(bench, trace=gathered)
+    if result.trip is not None:
+        raise InputError(f"the bench stopped at sample {result.trip.tick}: {result.trip.reason}", "record")
     found = RecordDiagnosis(record, calibration, bench, result)
     unexplained = gathered.columns()
     for name, params in banks.items():

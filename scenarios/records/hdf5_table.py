@@ -58,11 +58,11 @@ def netcdf_columns(content: bytes) -> Columns:
             refuse_large(len(file.variables), 0)
             arrays = {name: _joined(one.data) for name, one in file.variables.items()}
             attributes = {name: dict(cast(Any, one)._attributes) for name, one in file.variables.items()}
+        return _scaled(arrays, attributes)
     except InputError:
         raise
     except Exception as error:  # a damaged file may raise anything in a foreign reader
         raise unreadable("NetCDF", error) from None
-    return _scaled(arrays, attributes)
 
 
 def _joined(value: Any) -> Any:

@@ -47,7 +47,7 @@ def write_mcap(table: pa.Table, file: BinaryIO) -> None:
                 message |= {_port(name): _finite(columns[name][i]) for name in names}
                 writer.add_message(channels[block], max(at, 0), json.dumps(message).encode(), max(at, 0), row)
             row += 1
-    writer.finish()
+    writer.finish()  # type: ignore[no-untyped-call]
 
 
 def message_schema(schema: pa.Schema, block: str, names: list[str]) -> dict[str, Any]:

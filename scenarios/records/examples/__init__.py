@@ -17,7 +17,7 @@ class ExampleRecord(Table):
     Attributes
     ----------
     title : str
-        The device, and what is unusual about it.
+        The device and its peculiarity.
     healthy : int
         Samples from the start that are healthy.
     outcome, sentence : str

@@ -48,12 +48,15 @@ def npz(**columns: object) -> bytes:
     return content.getvalue()
 
 
-def netcdf(**columns: np.ndarray) -> bytes:
+def netcdf(scale: str = "", **columns: np.ndarray) -> bytes:
     content = io.BytesIO()
     with netcdf_file(content, "w") as file:
         for name, values in columns.items():
             file.createDimension(f"of_{name}", len(values))
-            file.createVariable(name, "f8", (f"of_{name}",))[:] = values
+            one = file.createVariable(name, "f8", (f"of_{name}",))
+            one[:] = values
+            if scale:
+                one.scale_factor = scale
         file.flush()
         return content.getvalue()
 
@@ -187,6 +190,7 @@ def binaries() -> Iterator[Hostile]:
     yield "fewer numbers.npz", npy_bomb(50_000), "announces 50000 numbers and has fewer"
     yield "no arrays.npz", zipped("a.txt", b"text"), "cannot be read as NPZ"
     yield "a dimension of 2 GB.nc", good["nc"].replace(struct.pack(">I", N), struct.pack(">I", 2**31 - 1)), "record"
+    yield "a scale in words.nc", netcdf("twice", time_ms=T, drive=U, displacement=Y), "cannot be read as NetCDF"
     yield "a table.xlsx", zipped("xl/workbook.xml", b"<x/>"), "unknown kind of file '.xlsx'"
     yield "no ending", TEXT.encode(), "unknown kind of file"
 

@@ -16,12 +16,13 @@ from typer.testing import CliRunner
 from core.diagnose.mmae import Mmae
 from core.errors import InputError
 from scenarios.benchmark import seeds
-from scenarios.benchmark.answer import section
+from scenarios.benchmark.answer import answers, section
+from scenarios.benchmark.figures import scores
 from scenarios.benchmark.measure import measure
 from scenarios.benchmark.seeds import SeedList, seed_list
-from scenarios.benchmark.track import WITHIN, tracks
+from scenarios.benchmark.track import WARM, WITHIN, tracks
 from scenarios.records import benchmark_files
-from scenarios.records.benchmark_files import HIDDEN, SAMPLES, export_cases, numbered, score_answers
+from scenarios.records.benchmark_files import HIDDEN, SAMPLES, export_cases, numbered, read_answer, score_answers
 from scenarios.run import run
 from server.cli.main import app
 
@@ -148,3 +149,50 @@ def test_the_command_exports_once_and_marks_rows_from_outside(
     assert nowhere.exit_code == 2 and "has no folder of a track" in nowhere.stderr
     both = call("--export", "a", "--answers", "b")
     assert both.exit_code == 2 and "goes with --track and --seeds alone" in both.stderr
+
+
+def filterpy_answers(table: Any) -> dict[str, np.ndarray]:
+    """Return the probabilities of filterpy's bank, from nothing but a file: models by the matrix exponential."""
+    from filterpy.kalman import KalmanFilter, MMAEFilterBank
+    from scipy.linalg import expm
+
+    about = json.loads(table.schema.metadata[b"combbench"])
+    drive, measured = table["drive"].to_numpy(), table["displacement"].to_numpy()
+    filters = []
+    for hypothesis in about["hypotheses"]:
+        m, b, k = (
+            about["device"][key] * hypothesis.get(name, 1.0)
+            for key, name in (("mass_mg", "mass"), ("damping_un_ms_um", "damping"), ("stiffness_un_um", "stiffness"))
+        )
+        whole = np.array([[0.0, 1.0, 0.0], [-k / m, -b / m, about["device"]["force_un_v"] / m], [0.0, 0.0, 0.0]])
+        step = expm(whole * about["dt_ms"])
+        one = KalmanFilter(dim_x=2, dim_z=1, dim_u=1)
+        one.F, one.B, one.H = step[:2, :2], step[:2, 2:], np.array([[1.0, 0.0]])
+        one.Q, one.R = one.B @ one.B.T * 0.3**2, np.array([[about["noise_um"] ** 2]])
+        one.x, one.P = np.zeros((2, 1)), np.diag([1.0, k / m * 1e-6])
+        filters.append(one)
+    n, floor = len(filters), 1e-3
+    bank = MMAEFilterBank(filters, [1.0 / n] * n, dim_x=2, H=filters[0].H)
+    found = np.empty((len(measured), n))
+    for i, value in enumerate(measured.tolist()):
+        if i:
+            bank.predict(u=np.array([[drive[i - 1]]]))
+        bank.update(np.array([[value]]))
+        bank.p = np.maximum(np.nan_to_num(bank.p, nan=floor), floor)
+        bank.p /= bank.p.sum()
+        found[i] = bank.p
+    return {hypothesis["name"]: found[:, i] for i, hypothesis in enumerate(about["hypotheses"])}
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+def test_the_bank_of_filterpy_scores_as_the_bank_of_the_library(public: Path, few: SeedList, tmp_path: Path) -> None:
+    said = filterpy_answers(pq.read_table(public / "case-001.parquet"))
+    np.savez(tmp_path / "case-001.npz", **said)  # type: ignore[arg-type]
+    track, case = tracks()[TRACK], dict(numbered(TRACK, few))["case-001"]
+    own = answers(track, case, {"mmae": section(Mmae, track)}, {})["mmae"]
+    other = read_answer(tmp_path, "case-001", track, case)
+    truth = np.where(np.arange(len(own.evidence)) < case.onset, 0, case.truth)[WARM:]
+    found = [scores(np.ascontiguousarray(one.classes[:, WARM:]), truth) for one in (own, other)]  # type: ignore[index]
+    print(found)
+    assert np.abs(np.subtract(*found)).max() < 0.005

@@ -18968,7 +18968,7 @@ export interface operations {
         parameters: {
             query?: {
                 /** @description Format of the answer */
-                format?: "csv" | "parquet" | "npz" | "mat";
+                format?: "csv" | "parquet" | "npz" | "mat" | "mcap";
                 /** @description Names of signals, repeated or separated by commas; left out: all signals */
                 signals?: string[];
                 /** @description The first tick; left out: the oldest tick */
@@ -19313,7 +19313,7 @@ export interface operations {
                 /** @description Number of columns; each has the smallest and the largest value of its ticks */
                 columns?: number;
                 /** @description File with every sample; left out: columns */
-                format?: ("csv" | "parquet" | "npz" | "mat") | null;
+                format?: ("csv" | "parquet" | "npz" | "mat" | "mcap") | null;
             };
             header?: never;
             path: {
@@ -19573,7 +19573,7 @@ export interface operations {
         parameters: {
             query?: {
                 /** @description Format of the answer */
-                format?: "csv" | "parquet" | "npz" | "mat";
+                format?: "csv" | "parquet" | "npz" | "mat" | "mcap";
                 /** @description Names of signals, repeated or separated by commas; left out: all signals */
                 signals?: string[];
                 /** @description The first tick; left out: the oldest tick */
