@@ -12,6 +12,7 @@ import { byChapter } from "../gallery/chapters";
 import { showSheet } from "../panels/sheet/begin";
 import { EmptyState } from "../ui/empty-state";
 import styles from "./dialogs.module.css";
+import { InstrumentOffer } from "./instrument-offer";
 import { SideSheet } from "./side-sheet";
 
 /** Start a bench from the library, on its own device or another; a study has no bench. */
@@ -95,6 +96,7 @@ function Gallery() {
           {words}
         </Button>
       ))}
+      {teaches && benches && <InstrumentOffer scenarios={benches.filter((s) => s.can_hide)} />}
       <SimpleGrid cols={2} spacing={12} mb={8} style={{ alignItems: "end" }}>
         <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect
