@@ -27,7 +27,7 @@ Word = Annotated[str, Field(min_length=1, max_length=80)]
 
 
 class LineHeader(BaseModel):
-    """What an instrument says about itself, before its first block."""
+    """The description of an instrument, before its first block."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 

@@ -15,7 +15,7 @@ PATIENCE_S = 10.0
 
 
 class InstrumentReader:
-    """Reads a connection; what is read and not yet played is at most a block.
+    """Reads a connection, one block at a time.
 
     Parameters
     ----------

@@ -2,6 +2,7 @@ import { screen, waitFor } from "@testing-library/react";
 import { expect, it } from "vitest";
 import type { ScenarioSummary } from "../api/types";
 import { Refusal, server } from "../testing/fake-server";
+import { connect } from "../testing/fake-transport";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount } from "../testing/render";
 import { InstrumentOffer } from "./instrument-offer";
@@ -21,6 +22,7 @@ it("is absent where no instrument sends", async () => {
 it("opens a bench on an instrument with the diagnosers of a scenario", async () => {
   server.on("GET", "/instruments", { listens: "127.0.0.1:1", instruments: [scope] });
   server.on("POST", "/instruments/:name/benches", bench);
+  connect(bench);
   const { user } = mount(<InstrumentOffer scenarios={scenarios} />);
   await user.selectOptions(await screen.findByLabelText("Diagnosers of"), "ch5-seven-step");
   await user.click(screen.getByRole("button", { name: /^scope, live at 100\skHz$/ }));

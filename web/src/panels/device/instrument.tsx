@@ -2,7 +2,7 @@ import { useBench } from "../../stream/bench-store";
 import { formatSi } from "../../ui/format";
 import styles from "./instrument.module.css";
 
-/** The instrument that the bench plays: its rate, its lag, and what was lost on the way. */
+/** The instrument that the bench plays: its rate, its lag, and the losses on the way. */
 export function Instrument() {
   const one = useBench((s) => s.bench?.instrument);
   if (!one) return null;
