@@ -49,7 +49,7 @@ class PlayedRecord(Protocol):
         """Whether more samples may come, for which the board then waits."""
 
     def stretch(self, first: int, end: int) -> Stretch:
-        """Return some samples, which are there."""
+        """Return samples before the end."""
 
 
 @dataclass(frozen=True, eq=False)

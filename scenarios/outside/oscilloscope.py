@@ -14,7 +14,7 @@ from core.errors import InputError, from_validation, one_line
 from scenarios.records.columns import Numbers
 
 READY_TRIES = 1000
-"""Times that a shot is asked whether it is there; each waits for the instrument's answer."""
+"""Queries for a shot that is not ready; each waits for the answer of the instrument."""
 
 
 class Strict(BaseModel):
@@ -24,7 +24,7 @@ class Strict(BaseModel):
 
 
 class ReadyQuery(Strict):
-    """How a shot says that it is there."""
+    """The query by which a shot is found ready, and its answer then."""
 
     query: str
     answer: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.board.document import Document
 from core.errors import InputError
-from core.measured_record import MeasuredRecord
+from core.measured_record import PlayedRecord
 from core.units import MG_PER_KG
 from scenarios.records.calibration import Calibration
 from scenarios.schema import Scenario
@@ -25,7 +25,7 @@ KEPT = (
 
 def on_record(
     scenario: Scenario,
-    record: MeasuredRecord,
+    record: PlayedRecord,
     noise_um: float | None = None,
     calibration: Calibration | None = None,
 ) -> Document:
@@ -35,7 +35,7 @@ def on_record(
     ----------
     scenario : Scenario
         The bench whose identifiers and diagnosers look at the record.
-    record : MeasuredRecord
+    record : PlayedRecord
         The record; it is on the shelf once the scenario is loaded.
     noise_um : float, optional
         The noise that filters assume, um; the noise of the calibration or of the scenario's sensor without it.

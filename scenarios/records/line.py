@@ -27,7 +27,7 @@ Word = Annotated[str, Field(min_length=1, max_length=80)]
 
 
 class LineHeader(BaseModel):
-    """What an instrument says about itself, before its first block."""
+    """The description of an instrument, before its first block."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
@@ -51,7 +51,7 @@ class BlockHead(NamedTuple):
 
     number: int
     time_ns: int
-    count: int
+    samples: int
 
 
 def read_header(line: bytes) -> LineHeader:
@@ -89,8 +89,8 @@ def read_head(content: bytes) -> BlockHead:
         For a block that is empty or too long.
     """
     head = BlockHead(*HEAD.unpack(content))
-    if not 1 <= head.count <= MOST_BLOCK:
-        raise InputError(f"has {head.count} samples; allowed: 1 to {MOST_BLOCK}", f"block {head.number}")
+    if not 1 <= head.samples <= MOST_BLOCK:
+        raise InputError(f"has {head.samples} samples; allowed: 1 to {MOST_BLOCK}", f"block {head.number}")
     return head
 
 
@@ -103,7 +103,7 @@ def read_pairs(head: BlockHead, content: bytes, factors: Numbers) -> NDArray[np.
         For a voltage that is no finite number: a bench cannot tell a lost voltage from a voltage of 0.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        pairs = np.frombuffer(content, "<f8").reshape(head.count, 2) * factors
+        pairs = np.frombuffer(content, "<f8").reshape(head.samples, 2) * factors
     wrong = np.flatnonzero(~np.isfinite(pairs[:, 0]))
     if len(wrong):
         raise InputError(f"the drive is no finite number at sample {wrong[0]}", f"block {head.number}")

@@ -69,7 +69,7 @@ class BlockOrder:
             self.lost_blocks += head.number - self._next
             self._skipped.append((self._next, head.number))
         self._next = head.number + 1
-        self._end_ns = head.time_ns + round(head.count * NS_PER_MS / self.rate_khz)
+        self._end_ns = head.time_ns + round(head.samples * NS_PER_MS / self.rate_khz)
         self.blocks += 1
         self.lost_samples += lost
         return lost

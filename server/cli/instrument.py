@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -69,13 +70,14 @@ def instrument(
     )
     read_header(header.model_dump_json().encode())
     sent, end_ns = 0, 0
-    with opened(address, library, "ADDRESS") as device, LineSender(to, header) as sender:
-        device_shots = Oscilloscope(device, scope)
+    with ExitStack() as stack:
+        oscilloscope = Oscilloscope(stack.enter_context(opened(address, library, "ADDRESS")), scope)
+        sender = stack.enter_context(LineSender(to, header))
         say(f"{address} sends to {to} as {source}")
         try:
             while shots is None or sent < shots:
                 began_ns = max(time.monotonic_ns(), end_ns)
-                drive, displacement = device_shots.shot()
+                drive, displacement = oscilloscope.shot()
                 sender.send(began_ns, scope.rate_khz, drive, displacement)
                 sent, end_ns = sent + 1, began_ns + round((len(drive) + GAP) * 1e6 / scope.rate_khz)
         except KeyboardInterrupt:

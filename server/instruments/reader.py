@@ -15,7 +15,7 @@ PATIENCE_S = 10.0
 
 
 class InstrumentReader:
-    """Reads a connection; what is read and not yet played is at most a block.
+    """Reads a connection, one block at a time.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class InstrumentReader:
         self._waits_since, self._awaited = self._clock(), f"the block after {source.order.blocks} blocks"
         head = read_head(first + await self._reader.readexactly(HEAD.size - 1))
         self._awaited = f"block {head.number}"
-        content = await self._reader.readexactly(PAIR * head.count)
+        content = await self._reader.readexactly(PAIR * head.samples)
         self._waits_since = None
         if source.connection is not self:
             return False

@@ -126,7 +126,7 @@ class Source:
         """
         now = self._clock()
         if self.order.place(head) is not None:
-            self._samples += head.count
+            self._samples += head.samples
             self._arrivals.came(self._samples, now)
         self._last = now
         for record in list(self.records):

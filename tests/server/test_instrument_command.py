@@ -33,6 +33,7 @@ devices:
     error: ERROR
     dialogues:
       - {{ q: "ACQ:START" }}
+      - {{ q: "RESET" }}
       - {{ q: "ACQ:READY?", r: "1" }}
       - {{ q: "CH1?", r: "#14{drive}" }}
       - {{ q: "CH2?", r: "#14{motion}" }}
@@ -42,6 +43,7 @@ resources:
 COMMANDS = """
 [scope]
 rate_khz = 50.0
+setup = ["RESET"]
 shot = ["ACQ:START"]
 ready = { query = "ACQ:READY?", answer = "1" }
 drive = "CH1?"

@@ -13,6 +13,7 @@ import { showSheet } from "../panels/sheet/begin";
 import { useRecords } from "../records/open-record";
 import { EmptyState } from "../ui/empty-state";
 import styles from "./dialogs.module.css";
+import { InstrumentOffer } from "./instrument-offer";
 import { SideSheet } from "./side-sheet";
 
 /** Start a bench from the library, on its own device or another; a study has no bench. */
@@ -110,6 +111,7 @@ function Gallery() {
           {words}
         </Button>
       ))}
+      {teaches && benches && <InstrumentOffer scenarios={benches.filter((s) => s.can_hide)} />}
       <SimpleGrid cols={2} spacing={12} mb={8} style={{ alignItems: "end" }}>
         <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect

@@ -8,6 +8,7 @@ import { Knob } from "../../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT } from "../../ui/surroundings";
 import { BlockValues, TitledValues } from "../card/block-values";
 import styles from "./device.module.css";
+import { Instrument } from "./instrument";
 import { PlantChoice } from "./plant-choice";
 import { SensorChoice } from "./sensor-choice";
 
@@ -22,6 +23,7 @@ export function DeviceView() {
     return <EmptyState title="No bench yet">The device of the bench and its model are chosen here.</EmptyState>;
   return (
     <section className={`view-page ${styles.panel}`} aria-label="Device">
+      <Instrument />
       <h2>Model</h2>
       <PlantChoice />
       <BlockValues id="plant" />
