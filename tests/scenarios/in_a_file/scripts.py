@@ -39,7 +39,7 @@ class Bout:
         return Bout(scenario, bench_file(scenario), build(scenario).checkpoint())
 
     def script(self, seed: int, ticks: int, count: int) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return a script with random commands, and what a native board gives."""
+        """Return a script with random commands, and the results of a native board."""
         rng = np.random.default_rng([seed, 20_261_126])
         board = Board.restore(self.start)
         moments = sorted(rng.integers(0, ticks, count).tolist())
@@ -103,7 +103,7 @@ def _node() -> str:
 
 
 def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
-    """Return what the scripts give on benches in files; the test is skipped where no Node is."""
+    """Return the results of the scripts on benches in files; the test is skipped where no Node is."""
     node = _node()
     if not node or not (WEB / "node_modules" / "rolldown").is_dir():
         pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")

@@ -113,14 +113,14 @@ async function show(): Promise<void> {
   requestAnimationFrame(draw);
 }
 
-/** The presets of the two scopes: what people look at first, as far as the bench has it. */
+/** The presets of the two scopes: displacement and voltage, as far as the bench has them, else the first presets. */
 function scopesOf(signals: FileDocument["signals"]): string[] {
   const titles = presetsOn(signals).map(({ title }) => title);
   const usual = ["Displacement", "Voltage"].filter((title) => titles.includes(title));
   return [...new Set([...usual, ...titles])].slice(0, 2);
 }
 
-/** A window of the usual length among those that the menu has. */
+/** The first window of the menu that holds the usual number of ticks. */
 const windowOf = (dtMs: number): number => [4, 10, 20, 50, 100, 200].find((ms) => ms >= USUAL_TICKS * dtMs) ?? 500;
 
 show().catch((error: Error) => {
