@@ -158,7 +158,7 @@ def _signals(board: Board) -> dict[str, Any]:
 
 
 def _trips(board: Board) -> dict[str, Any]:
-    """Return the places of the trips and the places that a trip sets to 0, of the guards of all axes or of the only guard."""
+    """Return the places of the trips of all guards, their reasons, and the places that a trip sets to 0."""
     wiring, spec = board.wiring, board.spec
     disengaged = [
         wiring.index[f"{one.prefix}.{port.name}"]
@@ -176,7 +176,7 @@ def _trips(board: Board) -> dict[str, Any]:
 
 
 def _followed(board: Board) -> dict[str, Any]:
-    """Return the signals whose changes become findings, in the order of their columns, and the words for their values."""
+    """Return the signals whose changes become findings, in the order of their columns, with their words."""
     signals = board.wiring.signals
     known = {*signals.names}
     found: dict[int, dict[str, Any]] = {}

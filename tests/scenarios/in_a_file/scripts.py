@@ -15,7 +15,9 @@ import pytest
 
 from core.board.board import Board, Checkpoint
 from core.board.commands import parse_event
+from core.board.fold import alike
 from core.errors import InputError
+from core.ports import RESERVED
 from scenarios.in_a_file.bench_file import BenchFile, bench_file
 from scenarios.in_a_file.pack import packed, text_of
 from scenarios.run import build
@@ -57,7 +59,20 @@ class Bout:
                 played.append([board.tick, command])
         script = {"ticks": board.tick if board.trip is None else ticks, "slices": SLICES, "commands": played}
         kinds = [entry.kind for entry in board.log if entry.kind not in ("warning", "scheduled")]
-        return script, {"digest": board.digest(), "tick": board.tick, "kinds": kinds, "tripped": board.trip is not None}
+        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.signals)].view(np.uint64))
+        return script, {
+            "digest": board.digest(),
+            "bits": bits,
+            "tick": board.tick,
+            "kinds": kinds,
+            "tripped": board.trip is not None,
+        }
+
+
+def bits_alike(bits: Any) -> list[int]:
+    """Return the bits of numbers, the same for every NaN."""
+    found: list[int] = alike(np.array(bits, dtype=np.uint64)).tolist()
+    return found
 
 
 def _does(board: Board, command: dict[str, Any]) -> bool:
