@@ -78,7 +78,7 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block]) -> b
 
 
 def _part(name: str, write: Callable[[], str], function: str = NAME) -> Any:
-    """Return a module with one function, from the shelf if it is there."""
+    """Return a module with one function, from the shelf if the shelf has it."""
     code = get(name)
     if code is None:
         part = target.aimed(write())

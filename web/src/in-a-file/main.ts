@@ -1,5 +1,6 @@
 import "../ui/theme.css";
 import "./in-a-file.css";
+import { presetsOn } from "../panels/scope/scope-presets";
 import { hover } from "../ui/hover";
 import type { Scheme } from "../ui/palette";
 import { teachWords } from "./bench-words";
@@ -50,7 +51,7 @@ async function show(): Promise<void> {
     tellAll();
   };
   const bar = new RunBar(bench, pace, time, act);
-  const scopes = [new ScopeView(bench, time, "Displacement"), new ScopeView(bench, time, "Voltage")];
+  const scopes = scopesOf(bench.document.signals).map((title) => new ScopeView(bench, time, title));
   const scored = Object.keys(diagnosers).filter((id) => diagnosers[id].scored);
   const lanes = scored.length > 0 ? new LanesView(bench, time, scored) : undefined;
   const controllers = new ControllerChoice(bench, act);
@@ -112,7 +113,14 @@ async function show(): Promise<void> {
   requestAnimationFrame(draw);
 }
 
-/** A window of the usual length among those that the menu has. */
+/** The presets of the two scopes: displacement and voltage, as far as the bench has them, else the first presets. */
+function scopesOf(signals: FileDocument["signals"]): string[] {
+  const titles = presetsOn(signals).map(({ title }) => title);
+  const usual = ["Displacement", "Voltage"].filter((title) => titles.includes(title));
+  return [...new Set([...usual, ...titles])].slice(0, 2);
+}
+
+/** The first window of the menu that holds the usual number of ticks. */
 const windowOf = (dtMs: number): number => [4, 10, 20, 50, 100, 200].find((ms) => ms >= USUAL_TICKS * dtMs) ?? 500;
 
 show().catch((error: Error) => {

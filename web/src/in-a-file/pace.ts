@@ -1,4 +1,4 @@
-/** Most device time that is made up for, in pictures: a page that was out of sight goes on from where it was. */
+/** Most wall time between two pictures that counts: a page that was out of sight continues at the same tick. */
 const MOST_LAG_MS = 100;
 /** Most time of computing between two pictures. */
 const MOST_MS = 14;

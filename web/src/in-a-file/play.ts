@@ -29,7 +29,10 @@ export async function play(code: string, pack: string, scripts: Script[]) {
       const next = Math.min(ticks, waiting[0]?.[0] ?? ticks);
       if (bench.tick >= ticks || bench.advance(Math.min(slices[k % slices.length], next - bench.tick)) === 0) break;
     }
-    played.push({ digest: await bench.digest(), tick: bench.tick, trip: bench.trip, refused, log: bench.log });
+    const { reserved, signals } = bench.document;
+    const numbers = bench.arrays.w.view.slice(reserved, reserved + signals.length);
+    const bits = Array.from(new BigUint64Array(numbers.buffer), String); // JSON has neither NaN nor -0
+    played.push({ digest: await bench.digest(), tick: bench.tick, trip: bench.trip, refused, log: bench.log, bits });
   }
   return played;
 }

@@ -30,11 +30,11 @@ export class ScopeView {
   private scheme: Scheme = "dark";
   private known: { log: unknown; marks: Marks } | undefined;
 
-  constructor(bench: FileBench, time: TimeWindow, first: string) {
+  constructor(bench: FileBench, time: TimeWindow, title: string) {
     this.bench = bench;
     this.time = time;
     const presets = presetsOn(bench.document.signals);
-    const chosen = presets.find(({ title }) => title === first) ?? presets[0];
+    const chosen = presets.find((one) => one.title === title) ?? presets[0];
     const choose = (title: string) => this.choose(presets.find((one) => one.title === title)?.signals ?? []);
     const choices = presets.map(({ title }) => [title, title] as const);
     const top = element("div", { className: "line" }, menu("Signals", choices, chosen.title, choose), this.legend);
