@@ -11,6 +11,7 @@ import { LanesHeadline } from "../panels/lanes/lanes-headline";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
+import { drawOnce } from "../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount, words } from "../testing/render";
 
@@ -39,6 +40,7 @@ it("goes forward in the record by the timeline, as far as the record is long", a
   expect(slider).toHaveAttribute("aria-valuemax", "9000");
   slider.focus();
   await user.keyboard("{ArrowRight}");
+  await drawOnce();
   await waitFor(() => expect(board.commands).toEqual([{ kind: "step", ticks: 1 }]));
 });
 
