@@ -15,7 +15,7 @@ def main() -> None:
     """Print the document of an application with the usual settings."""
     with tempfile.TemporaryDirectory() as folder:
         document = create_app(Settings(data=Path(folder))).openapi()
-    json.dump(document, sys.stdout, indent=2)
+    json.dump(document, sys.stdout, indent=1)
     sys.stdout.write("\n")
 
 

@@ -89,13 +89,9 @@ class MeasuredRecords:
             shutil.rmtree(folder, ignore_errors=True)
 
     async def recover(self) -> None:
-        """Delete the uploads that were under way when the server stopped, and files without a row."""
-        keys = await self._database.run(lambda session: set(session.scalars(select(RecordRow.key))))
-        for path in self.folder.glob("*"):
-            if path.name.startswith(UPLOADING):
-                await asyncio.to_thread(shutil.rmtree, path, ignore_errors=True)
-            elif path.suffix != ".npz" or path.stem not in keys:
-                path.unlink(missing_ok=True)
+        """Delete the uploads that were under way when the server stopped; a file without a row may be another's."""
+        for path in self.folder.glob(f"{UPLOADING}*"):
+            await asyncio.to_thread(shutil.rmtree, path, ignore_errors=True)
 
     async def keep(self, name: str, owner: str, file: Path, key: str, **fields: Any) -> tuple[KeptRecord, bool]:
         """Keep the file of a record that was read; a record that its owner has already is not kept twice.

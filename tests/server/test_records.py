@@ -36,13 +36,6 @@ def seven() -> RunResult:
     return run(get("ch5-seven-step"), taps=True)
 
 
-def columns_of(trace: RunResult) -> dict[str, np.ndarray]:
-    return {
-        name: np.array(trace.signal(one))
-        for name, one in (("drive", "drive.voltage"), ("displacement", "sensor.displacement"))
-    }
-
-
 def csv(drive: np.ndarray, displacement: np.ndarray, head: str = "time_ms,drive,displacement") -> bytes:
     rows = zip((np.arange(len(drive)) * DT).tolist(), drive.tolist(), displacement.tolist(), strict=True)
     return "\n".join([head, *(f"{t!r},{u!r},{y!r}" for t, u, y in rows)]).encode()
@@ -81,7 +74,9 @@ def test_the_door_and_a_live_bench_give_the_bits_of_the_trace(live: Live, seven:
     for name in (*signals, *names):
         shown = np.array(seven.signal(name)).astype(np.float32)  # a history keeps so many bits
         assert np.array_equal(table[name].to_numpy().view(np.int32), shown.view(np.int32)), name
-    apart = run(Scenario.load(on_record(get("ch5-seven-step"), MeasuredRecord(50.0, **columns_of(seven)))), taps=True)
+    drive, displacement = map(np.array, signals.values())
+    record = MeasuredRecord(50.0, drive, displacement)
+    apart = run(Scenario.load(on_record(get("ch5-seven-step"), record)), taps=True)
     assert live.http.get(f"/api/v1/benches/{bench['id']}/digest").json()["digest"] == apart.digest
     for name in (*signals, *names):
         assert np.array_equal(apart.signal(name).view(np.int64), seven.signal(name).view(np.int64)), name
@@ -302,5 +297,5 @@ def test_records_outlive_the_server_and_uploads_under_way_do_not(tmp_path: Path)
     (tmp_path / "records" / f"{'0' * 64}.npz").write_bytes(b"left")
     with serving(tmp_path) as second:
         assert second.http.get(f"{RECORDS}/{made['id']}").json()["plot"]["sample"] == list(range(60))
-        assert [path.name for path in listing(second)] == [f"{made['key']}.npz"]
+        assert [path.name for path in listing(second)] == [f"{'0' * 64}.npz", f"{made['key']}.npz"]
         assert second.http.post(f"/api/v1/benches/{bench}/reopen").status_code == 200

@@ -21,10 +21,7 @@ function simulated(samples: number, faultFrom: number): string {
     const fast = Math.sqrt(k / m - slow * slow);
     const [c, s, e] = [Math.cos(fast * dt), Math.sin(fast * dt), Math.exp(-slow * dt)];
     const z = x - rest;
-    [x, v] = [
-      rest + e * (z * c + ((v + slow * z) / fast) * s),
-      e * (v * c - ((slow * v + (k / m) * z) / fast) * s),
-    ];
+    [x, v] = [rest + e * (z * c + ((v + slow * z) / fast) * s), e * (v * c - ((slow * v + (k / m) * z) / fast) * s)];
   }
   return rows.join("\n");
 }
@@ -32,12 +29,15 @@ function simulated(samples: number, faultFrom: number): string {
 test("a CSV is dropped, calibrated, diagnosed and played on a bench", async ({ page, openBench }) => {
   await openBench("lab");
   const text = simulated(6000, 4000);
-  await page.evaluate((content) => {
-    const data = new DataTransfer();
-    data.items.add(new File([content], "device.csv"));
-    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
-  }, text);
   const sheet = page.getByRole("dialog", { name: "A record of your device" });
+  await expect(async () => {
+    await page.evaluate((content) => {
+      const data = new DataTransfer();
+      data.items.add(new File([content], "device.csv"));
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    }, text);
+    await expect(sheet).toBeVisible({ timeout: 5000 });
+  }).toPass();
   await expect(sheet.getByRole("region", { name: "device.csv" })).toBeVisible();
   await expect(sheet.getByText("6000 samples at 50 kHz")).toBeVisible();
 
@@ -54,7 +54,10 @@ test("a CSV is dropped, calibrated, diagnosed and played on a bench", async ({ p
 
   await sheet.getByRole("button", { name: "Calibrate", exact: true }).click();
   await expect(sheet.getByText(/^The fit holds/)).toBeVisible();
-  const mass = sheet.getByRole("row", { name: /^Mass over nominal/ }).getByRole("cell").first();
+  const mass = sheet
+    .getByRole("row", { name: /^Mass over nominal/ })
+    .getByRole("cell")
+    .first();
   expect(Number(await mass.textContent())).toBeCloseTo(1.04, 2);
   await sheet.getByRole("button", { name: "Diagnose" }).click();
   const verdicts = sheet.getByRole("list", { name: "Verdicts of kalman" });

@@ -1,15 +1,17 @@
-import { screen } from "@testing-library/react";
+import { screen, waitFor } from "@testing-library/react";
 import { beforeEach, expect, it } from "vitest";
 import { DeviceSelect } from "../app/header/device-select";
 import { SensorSelect } from "../app/header/header";
 import { hintsOf } from "../app/hints";
 import { RecordLine } from "../app/record-line";
+import { TimeBar } from "../app/time-bar";
 import { ControllersPanel } from "../panels/controllers/controllers-panel";
 import { FaultsPanel } from "../panels/faults/faults-panel";
 import { LanesHeadline } from "../panels/lanes/lanes-headline";
 import { ScoreboardPanel } from "../panels/scoreboard/scoreboard-panel";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
+import { drawOnce } from "../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount, words } from "../testing/render";
 
@@ -29,6 +31,17 @@ it("says how long the record is, and that nothing is scored without labels", asy
   expect(screen.getByRole("region", { name: "Record" })).toHaveTextContent(/It has no labels: the truth is not known/);
   await user.click(screen.getByRole("button", { name: "As fast as it goes" }));
   expect(board.commands).toEqual([{ kind: "time_scale", value: null }]);
+});
+
+it("goes forward in the record by the timeline, as far as the record is long", async () => {
+  const board = connect({ ...played([]), tick: 8000, first_tick: 0, earliest_tick: 0, state: "paused", origin: null });
+  const { user } = mount(<TimeBar />);
+  const slider = screen.getByRole("slider", { name: "Moment shown by all panels" });
+  expect(slider).toHaveAttribute("aria-valuemax", "9000");
+  slider.focus();
+  await user.keyboard("{ArrowRight}");
+  await drawOnce();
+  await waitFor(() => expect(board.commands).toEqual([{ kind: "step", ticks: 1 }]));
 });
 
 it("shows nothing on a bench of a simulated plant", () => {
