@@ -16,6 +16,7 @@ from core.cards import card
 from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
 from scenarios.narrator.words import act_words, reason_words
+from scenarios.records.live import LiveRecord
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
 from server.bench.status import (
@@ -35,6 +36,12 @@ from server.store.experiment import THIS_VERSION, Experiment
 
 if TYPE_CHECKING:
     from server.bench.bench import LiveBench
+
+
+def live_record_of(bench: LiveBench) -> LiveRecord | None:
+    """Return the record of an instrument that a bench plays, if it does."""
+    record = bench.board.spec.record if isinstance(bench.board, Board) else None
+    return record if isinstance(record, LiveRecord) else None
 
 
 def status_of(bench: LiveBench) -> BenchStatus:
@@ -93,7 +100,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
 
 def _instrument(bench: LiveBench) -> InstrumentStatus | None:
     """Describe the instrument that a bench plays, as it is now."""
-    record = bench.live_record
+    record = live_record_of(bench)
     if record is None:
         return None
     order, arrivals, now = record.order, record.arrivals, bench.clock()
