@@ -26,7 +26,7 @@ from server.bench.status import (
     DiagnoserInfo,
     InstrumentStatus,
     Pending,
-    PlayedRecord,
+    BenchRecord,
     State,
     SupervisorAct,
     SupervisorStatus,
@@ -154,13 +154,13 @@ def _supervisor(board: Board) -> SupervisorStatus:
     )
 
 
-def _played(spec: Spec) -> PlayedRecord | None:
+def _played(spec: Spec) -> BenchRecord | None:
     """Describe the record that a bench plays."""
     if spec.record is None:
         return None
     plant: Any = spec.plant.params
-    labels = [] if spec.record.label is None else list(spec.record.hypotheses)
-    return PlayedRecord(key=plant.record, samples=spec.record.samples, labels=labels)
+    labels = list(spec.record.hypotheses) if spec.record.has_labels else []
+    return BenchRecord(key=plant.record, samples=spec.record.samples, labels=labels)
 
 
 def bench_of(bench: LiveBench, around: dict[str, Any], view3d: str | None) -> Bench:

@@ -205,7 +205,7 @@ class HiddenQuestion(BaseModel):
     by_tick: int = Field(description="The fault has come by then, if there is one")
 
 
-class PlayedRecord(BaseModel):
+class BenchRecord(BaseModel):
     """A record of a real device that a bench plays: nothing can act on it."""
 
     key: str
@@ -243,7 +243,7 @@ class Bench(BenchStatus):
     parameters: dict[str, Any] = Field(description="The scenario as it is now, every live change in it")
     view3d: str | None = Field(description="Path of the 3D page, if there is one")
     replay_of: str | None = Field(None, description="The recording it plays; such a bench takes no changes")
-    record: PlayedRecord | None = Field(None, description="The record of a device that plays in place of its plant")
+    record: BenchRecord | None = Field(None, description="The record of a device that plays in place of its plant")
     recorded_scale: float | None = Field(None, description="Device seconds per wall second it was recorded at")
     opened: Opened | None = Field(None, description="The experiment it was opened from, if it was")
     blind: HiddenQuestion | None = Field(
