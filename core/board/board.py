@@ -31,7 +31,7 @@ from core.board.walk import Walk
 from core.board.wiring import Wiring, wire
 from core.errors import InputError
 from core.loop.score import Scores
-from core.plant.record import supply
+from core.plant.record import playable, supply
 from core.ports import RESERVED
 from core.signals import SignalTable
 
@@ -191,12 +191,8 @@ class Board:
 
     def _left(self) -> int:
         """Return the ticks that the plant can play now; at the end of a record that does not grow the board trips."""
-        record = self.spec.record
-        if record is None:
-            return CHUNK
-        is_growing = record.is_growing  # before its samples: the last of them come before it ends
-        left = record.samples - self.tick
-        if left <= 0 and not is_growing and self.trip is None:
+        left, has_ended = (CHUNK, False) if self.spec.record is None else playable(self.spec.record, self.tick)
+        if has_ended and self.trip is None:
             self._trip("the record has ended")
         return left
 

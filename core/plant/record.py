@@ -76,6 +76,13 @@ class RecordPlant(Block):
             x.missing = 1.0
 
 
+def playable(record: PlayedRecord, tick: int) -> tuple[int, bool]:
+    """Return the samples from a tick on, and whether the record has ended."""
+    is_growing = record.is_growing  # before its samples: the last of them come before it ends
+    left = record.samples - tick
+    return left, left <= 0 and not is_growing
+
+
 def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: int) -> None:
     """Put the samples of the next ticks into the state, at most ``WINDOW``: without offset, the voltage delayed."""
     s: Any = RecordPlant.State(state)

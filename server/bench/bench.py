@@ -18,7 +18,6 @@ from core.board.history import History
 from core.board.kept import Ticks
 from core.board.track import Deed, Track
 from core.signals import Signal
-from scenarios.records.live import LiveRecord
 from scenarios.schema import Scenario
 from server.bench import commands
 from server.bench.captures import Captures
@@ -149,12 +148,6 @@ class LiveBench:
         """All signals, in the order of the history."""
         signals: Sequence[Signal] = self.board.signals
         return signals
-
-    @property
-    def live_record(self) -> LiveRecord | None:
-        """The record of an instrument that it plays, if it does."""
-        record = self.board.spec.record if isinstance(self.board, Board) else None
-        return record if isinstance(record, LiveRecord) else None
 
     @property
     def is_running(self) -> bool:

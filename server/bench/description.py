@@ -17,6 +17,7 @@ from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
+from server.bench.instrument import live_record
 from server.bench.status import (
     ActiveFault,
     Bench,
@@ -91,7 +92,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
 
 def _instrument(bench: LiveBench) -> InstrumentStatus | None:
     """Describe the instrument that a bench plays, as it is now."""
-    record = bench.live_record
+    record = live_record(bench.board)
     if record is None:
         return None
     order, arrivals, now = record.order, record.arrivals, bench.clock()

@@ -71,7 +71,7 @@ def test_a_clock_that_runs_back_is_refused() -> None:
     order = BlockOrder(RATE_KHZ)
     placed(order, (0, 0))
     assert order.place(BlockHead(1, 9 * NS, 10)) == 0  # a sample is within the error of a clock
-    with pytest.raises(InputError, match="block 2: begins 30 .s before the end of the block before it"):
+    with pytest.raises(InputError, match=r"block 2: begins 30 .s before the end of the block before it"):
         order.place(BlockHead(2, 16 * NS, 10))
     assert order.blocks == 2
 
