@@ -48,6 +48,11 @@ class RecordFolder:
                 return read(self.path / f"{key}{ending}")
         return None
 
+    def whole(self, key: str) -> MeasuredRecord | None:
+        """Return a record that has ended, with all its samples at once; nothing when its file is absent or damaged."""
+        found = self.get(key)
+        return found if isinstance(found, MeasuredRecord) else None
+
     def keep(self, record: MeasuredRecord) -> str:
         """Keep a record, and return its key; a record that is here already is not written again.
 

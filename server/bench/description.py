@@ -16,17 +16,17 @@ from core.cards import card
 from core.device.two_axis import TwoAxis
 from core.faults.fault import FaultParams
 from scenarios.narrator.words import act_words, reason_words
-from scenarios.records.live import LiveRecord
 from scenarios.schema import Scenario
 from server.bench.commands import MAX_PENDING
+from server.bench.instrument import live_record
 from server.bench.status import (
     ActiveFault,
     Bench,
+    BenchRecord,
     BenchStatus,
     DiagnoserInfo,
     InstrumentStatus,
     Pending,
-    BenchRecord,
     State,
     SupervisorAct,
     SupervisorStatus,
@@ -36,12 +36,6 @@ from server.store.experiment import THIS_VERSION, Experiment
 
 if TYPE_CHECKING:
     from server.bench.bench import LiveBench
-
-
-def live_record_of(bench: LiveBench) -> LiveRecord | None:
-    """Return the record of an instrument that a bench plays, if it does."""
-    record = bench.board.spec.record if isinstance(bench.board, Board) else None
-    return record if isinstance(record, LiveRecord) else None
 
 
 def status_of(bench: LiveBench) -> BenchStatus:
@@ -100,7 +94,7 @@ def status_of(bench: LiveBench) -> BenchStatus:
 
 def _instrument(bench: LiveBench) -> InstrumentStatus | None:
     """Describe the instrument that a bench plays, as it is now."""
-    record = live_record_of(bench)
+    record = live_record(bench.board)
     if record is None:
         return None
     order, arrivals, now = record.order, record.arrivals, bench.clock()

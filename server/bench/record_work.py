@@ -162,6 +162,13 @@ def record_document(source: str | Document, units: Document, key: str) -> Docume
     return {**{name: part for name, part in document.items() if name != "units"}, **({"units": own} if own else {})}
 
 
+def _whole(key: str) -> MeasuredRecord:
+    record = record_of(key, "record")
+    if not isinstance(record, MeasuredRecord):
+        raise InputError("comes from an instrument; send its file when it has ended", "record")
+    return record
+
+
 def calibrated(source: str | Document, units: Document, key: str, first: int, end: int | None) -> dict[str, Any]:
     """Return the calibration of a record, and the values by which any bench gets its device.
 
@@ -172,7 +179,7 @@ def calibrated(source: str | Document, units: Document, key: str, first: int, en
     """
     from scenarios.records.calibration import calibrate
 
-    scenario, record = _bench(source, units), record_of(key, "record")
+    scenario, record = _bench(source, units), _whole(key)
     found = calibrate(record, scenario.spec.nominal, first, _quarter(record, end))
     return {**told(found), "values": {} if found.refusal else _values(scenario, found)}
 
@@ -187,7 +194,7 @@ def diagnosed(source: str | Document, units: Document, key: str, first: int, end
     """
     from scenarios.records.diagnosis import as_document, diagnose
 
-    scenario, record = _bench(source, units), record_of(key, "record")
+    scenario, record = _bench(source, units), _whole(key)
     found = diagnose(record, scenario, first, _quarter(record, end))
     document = as_document(found)
     return {

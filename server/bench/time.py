@@ -12,8 +12,9 @@ from core.errors import InputError
 from core.format import format_short
 from server.bench import commands
 from server.bench.commands import MAX_PENDING, Step, StepPeriod
-from server.bench.description import live_record_of, period_of
+from server.bench.description import period_of
 from server.bench.events import Event
+from server.bench.instrument import live_record
 from server.bench.pacing import Pacer
 from server.metrics import Metrics
 
@@ -276,7 +277,7 @@ class DeviceTime:
         if self.steps:
             return None
         target = self.pacer.target(self._bench.board.tick, now)
-        if (record := live_record_of(self._bench)) is not None and record.is_growing:
+        if (record := live_record(self._bench.board)) is not None and record.is_growing:
             target = record.samples if target is None else min(target, record.samples)
         if self.ends_at is not None:
             return self.ends_at if target is None else min(target, self.ends_at)
@@ -307,13 +308,13 @@ class DeviceTime:
             if not self.fast_forward.advance(end - before):
                 return False
             ran = bench.board.tick - before
-            if live_record_of(bench) is None or not 0 < ran < end - before or bench.clock() - began >= MOST_BEHIND_S:
+            if live_record(bench.board) is None or not 0 < ran < end - before or bench.clock() - began >= MOST_BEHIND_S:
                 return True
 
     def finish_round(self, target: int | None, now: float) -> None:
         """Account for a round; refresh the status now and then."""
         pacer = self.pacer
-        if (record := live_record_of(self._bench)) is not None:
+        if (record := live_record(self._bench.board)) is not None:
             record.arrivals.played(self._bench.board.tick, now)
         if self.is_started:
             pacer.record(self._bench.board.tick, target if pacer.scale is not None else None, now)

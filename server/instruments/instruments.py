@@ -16,8 +16,8 @@ from scenarios.records.shelf import RecordFolder
 from scenarios.schema import Scenario
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
-from server.bench.description import live_record_of
 from server.bench.engine import Engine
+from server.bench.instrument import live_record
 from server.clock import Clock
 from server.errors import not_found
 from server.instruments.reader import InstrumentReader
@@ -177,7 +177,7 @@ class Instruments:
             self._engine.submit(_note, session, text)
 
     def _playing(self, record: LiveRecord) -> list[LiveBench]:
-        return [session for session in self._benches.all() if live_record_of(session) is record]
+        return [session for session in self._benches.all() if live_record(session.board) is record]
 
     def _why_to_end(self, record: LiveRecord) -> str:
         if not self._playing(record):

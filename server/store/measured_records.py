@@ -149,7 +149,7 @@ class MeasuredRecords:
 
     async def samples(self, record: KeptRecord) -> MeasuredRecord:
         """Return the samples of a record, or refuse a damaged file with 410."""
-        found = await asyncio.to_thread(RecordFolder(self.folder).get, record.key)
+        found = await asyncio.to_thread(RecordFolder(self.folder).whole, record.key)
         if found is None:
             raise ApiError(410, "damaged", "the file of the record is damaged or gone", hint="delete it")
         return found
