@@ -1,4 +1,4 @@
-"""Record answers and streams of the service for the tests of the page: the same bytes each time."""
+"""Record answers and streams of the service for the tests of the page; files of unchanged answers stay as they are."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from typing import Any
 import httpx
 from record_panels import record_questions
 from record_views import record_campaign, record_design, record_exercises, record_kept, record_theory
+from same_answer import is_same
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
@@ -104,7 +105,9 @@ class Recorder:
         for found in sorted(self._names, key=len, reverse=True):
             text = re.sub(rf"(?<!\w){re.escape(found)}(?!\w)", self._names[found], text)
         lines = re.sub(r"(?<=[\]}]),(?=[\[{])", ",\n", MOMENT.sub(NOW, DIGEST.sub('"digest"', text)))
-        (folder / f"{name}.json").write_text(lines + "\n", encoding="utf-8")
+        file = folder / f"{name}.json"
+        if not file.exists() or not is_same(json.loads(file.read_text("utf-8")), json.loads(lines)):
+            file.write_text(lines + "\n", encoding="utf-8")
 
 
 def _settled(content: Any) -> Any:

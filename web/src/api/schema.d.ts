@@ -3741,7 +3741,7 @@ export interface components {
              */
             replay_of?: string | null;
             /** @description The record of a device that plays in place of its plant */
-            record?: components["schemas"]["PlayedRecord"] | null;
+            record?: components["schemas"]["BenchRecord"] | null;
             /**
              * Recorded Scale
              * @description Device seconds per wall second it was recorded at
@@ -3890,6 +3890,21 @@ export interface components {
              * @default false
              */
             paused?: boolean;
+        };
+        /**
+         * BenchRecord
+         * @description A record of a real device that a bench plays: nothing can act on it.
+         */
+        BenchRecord: {
+            /** Key */
+            key: string;
+            /** Samples */
+            samples: number;
+            /**
+             * Labels
+             * @description Names of its labels; empty: the truth is not known, and so no score
+             */
+            labels: string[];
         };
         /**
          * BenchmarkCard
@@ -7466,21 +7481,6 @@ export interface components {
             game: string;
             /** Seed */
             seed: number;
-        };
-        /**
-         * PlayedRecord
-         * @description A record of a real device that a bench plays: nothing can act on it.
-         */
-        PlayedRecord: {
-            /** Key */
-            key: string;
-            /** Samples */
-            samples: number;
-            /**
-             * Labels
-             * @description Names of its labels; empty: the truth is not known, and so no score
-             */
-            labels: string[];
         };
         /**
          * PointTally
@@ -11800,6 +11800,8 @@ export interface components {
             thickness_um?: number | null;
             /** @description gap between fingers as etched, µm */
             finger_gap_um?: number | null;
+            /** @description field beyond the facing sides of fingers: over a grounded plane, or free of one */
+            fringing?: ("grounded_plane" | "free") | null;
             /** @description of a plant that is no resonator */
             transfer_function?: components["schemas"]["TransferFunction"] | null;
             /** @description of a device with two axes */
@@ -16883,6 +16885,7 @@ export type BenchClaim = components['schemas']['BenchClaim'];
 export type BenchList = components['schemas']['BenchList'];
 export type BenchName = components['schemas']['BenchName'];
 export type BenchOnInstrument = components['schemas']['BenchOnInstrument'];
+export type BenchRecord = components['schemas']['BenchRecord'];
 export type BenchmarkCard = components['schemas']['BenchmarkCard'];
 export type BenchmarkDetail = components['schemas']['BenchmarkDetail'];
 export type BenchmarkList = components['schemas']['BenchmarkList'];
@@ -17044,7 +17047,6 @@ export type Pause = components['schemas']['Pause'];
 export type Pending = components['schemas']['Pending'];
 export type Play = components['schemas']['Play'];
 export type Played = components['schemas']['Played'];
-export type PlayedRecord = components['schemas']['PlayedRecord'];
 export type PointTally = components['schemas']['PointTally'];
 export type PortCard = components['schemas']['PortCard'];
 export type PositiveRealReport = components['schemas']['PositiveRealReport'];
