@@ -106,7 +106,10 @@ it("shows motion, rate and parameters of a device with two axes", async () => {
     index: index + 1000,
     ...place,
   }));
-  const board = connect({ ...bench, signals: [...bench.signals.filter(({ name }) => !name.includes(".weighted.")), ...own] });
+  const board = connect({
+    ...bench,
+    signals: [...bench.signals.filter(({ name }) => !name.includes(".weighted.")), ...own],
+  });
   board.status(status);
   mount(<ScoreboardPanel />);
   board.frame(
@@ -115,9 +118,11 @@ it("shows motion, rate and parameters of a device with two axes", async () => {
   );
   await drawOnce();
   const table = screen.getByRole("table", { name: /^Models weighted by their probabilities/ });
-  expect(within(table).getAllByRole("columnheader").map((head) => head.textContent)).toEqual([
-    ...["Diagnoser", "x", "y", "Rate", "Mass", "Stiffness", "Damping", "Stiffness of y", "Quadrature"],
-  ]);
+  expect(
+    within(table)
+      .getAllByRole("columnheader")
+      .map((head) => head.textContent),
+  ).toEqual(["Diagnoser", "x", "y", "Rate", "Mass", "Stiffness", "Damping", "Stiffness of y", "Quadrature"]);
   const shown = within(within(table).getByRole("row", { name: /^kalman / })).getAllByRole("cell");
   expect(shown.map((cell) => cell.textContent?.replace(/\s/g, " "))).toEqual([
     "500 nm± 1.00 pm",
