@@ -57,6 +57,7 @@ EXAMPLES: dict[str, tuple[Any, Any]] = {
         {"scenario": "first-look"},
         {"scenario": "ch5-seven-step", "set": {"sensor.noise_um": 0.06}, "seed": 7, "paused": True},
     ),
+    "open_on_instrument": ({}, {"scenario": "ch5-seven-step", "set": {"device.mass_kg": 2.1e-9}, "noise_um": 0.03}),
     "name_bench": ({"name": "heavier plate"}, {"name": ""}),
     "command": ({"fault": "added_mass", "severity": 0.05}, {"kind": "step", "ticks": 100}),
     "fork_bench": ({}, {"tick": 2000, "before": True, "paused": True, "name": "before the fault"}),
