@@ -1,6 +1,6 @@
 import type { LogEntry } from "../api/types";
 
-/** What the numbers at some places become with a value: its multiples, or the numbers at the points of a grid. */
+/** How the numbers at some places follow a value: as its multiples, or by the points of a grid. */
 export interface Dependence {
   places: BigInt64Array;
   factors?: Float64Array;
@@ -137,7 +137,7 @@ export interface FileDocument {
   sensors: { all: string[]; measuring: string };
   controllers: Record<string, string>;
   events: FileEvent[];
-  /** What was done before the first tick. */
+  /** The entries of the log before the first tick. */
   log: Omit<FileEntry, "seq">[];
 }
 
