@@ -30,7 +30,7 @@ class DeviceModel(ABC, Generic[P]):
     session : LiveBench
         The bench.
     signals : sequence of str
-        The signals that its poses are read from.
+        The signals that its poses are read from; a record of a device has fewer.
     """
 
     blank: P
@@ -40,8 +40,12 @@ class DeviceModel(ABC, Generic[P]):
 
     def __init__(self, session: LiveBench, signals: Sequence[str]) -> None:
         spec = session.board.spec
-        self._session, self._indices = session, session.indices(signals)
-        self._faults: dict[str, type[Any]] = faults_of(spec.axes, spec.library)
+        known = {signal.name for signal in session.signals}
+        self._session, self._signals = session, [name for name in signals if name in known]
+        self._indices = session.indices(self._signals)
+        self._faults: dict[str, type[Any]] = {
+            name: params for name, params in faults_of(spec.axes, spec.library).items() if f"faults.{name}" in known
+        }
         self._severities = session.indices([f"faults.{name}" for name in self._faults])
         self._known: dict[str, Any] = {}
         self._marked: Any = None

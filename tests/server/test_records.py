@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from scenarios.library import get
 from scenarios.records.bench import on_record
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
+from server.view3d.viewers import device_of
 from tests.scenarios.records.foreign import DT, draw
 from tests.server.classroom.group import Somebody, join, open_class
 from tests.server.conftest import Live, serving
@@ -170,6 +172,17 @@ def test_a_diagnosis_names_the_fault_or_refuses_with_the_reason(live: Live, fore
     saved = live.http.post(DEVICES, json={"end": 2000, "name": "rubbed", "record": made["id"]})
     assert saved.status_code == 422 and "friction explains" in saved.json()["error"]["message"]
     assert live.http.get(DEVICES).json()["devices"] == []
+
+
+def test_the_scene_of_a_record_follows_it_and_has_no_faults(live: Live, foreign: dict[str, Any]) -> None:
+    bench = live.bench("first-look", record=foreign["id"], paused=True)
+    assert live.command(bench["id"], "step", ticks=200).status_code == 200
+    assert live.http.get(bench["view3d"]).status_code == 200
+    session = live.service.benches.get(bench["id"])
+    pose = device_of(session).pose()
+    factor = float(re.search(r"motion ×\s*([0-9.]+)", pose.caption)[1])  # type: ignore[index]
+    assert pose.displacement_um == pytest.approx(factor * session.board.value("plant.displacement"), rel=1e-6)
+    assert (pose.turn, pose.shift_um, pose.faults) == (0.0, 0.0, ())
 
 
 def test_the_key_of_a_run_holds_the_record(live: Live, foreign: dict[str, Any]) -> None:

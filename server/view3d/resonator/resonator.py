@@ -133,8 +133,10 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         tick, is_strobed = moment(head, period, rate_ticks_s, time.monotonic())
         tick = max(tick, history.first_tick)
         values = finite(history.read(self._indices, tick, tick + 1))[:, 0]
-        x, reference, turn, shift, contact, short, measured = values[: len(SIGNALS)].tolist()
-        self._magnify(history.columns(self._indices[: len(MOVED)], head - round(3 * (period or 1000)), head, 1))
+        known = dict.fromkeys(SIGNALS, 0.0) | dict(zip(self._signals, values.tolist(), strict=True))
+        x, reference, turn, shift, contact, short, measured = (known[name] for name in SIGNALS)
+        moved = [self._indices[at] for at, name in enumerate(self._signals) if name in MOVED]
+        self._magnify(history.columns(moved, head - round(3 * (period or 1000)), head, 1))
         plant = spec.plant.params
         turns = isinstance(plant, PlaneParams)
         combs = combs_of(shift, 1e-3 * turn, self.layout.tip_um, plant)
@@ -142,7 +144,7 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         pose = ResonatorPose(
             displacement_um=x * self._factor,
             reference_um=reference * self._factor,
-            estimate_um=self._estimate(measured, values[len(SIGNALS) :]),
+            estimate_um=self._estimate(measured, values[sum(name in SIGNALS for name in self._signals) :]),
             shift_um=shift,
             turn=1e-3 * turn * self._turn_factor,
             combs_um=combs,
@@ -158,7 +160,7 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         """Choose the exaggerations from recent minima and maxima."""
         largest = np.abs(finite(recent)).max(axis=(1, 2))
         self._factor = exaggeration(float(largest[:2].max()), self._factor)
-        ends_um = 1e-3 * float(largest[2]) * self.layout.geometry.arm_length_um / 2
+        ends_um = 1e-3 * float(largest[2:].max(initial=0.0)) * self.layout.geometry.arm_length_um / 2
         self._turn_factor = exaggeration(ends_um, self._turn_factor, WANTED_TURN_UM, TURN_EXAGGERATIONS)
 
     def _estimate(self, measured: float, values: FloatArray) -> float | None:

@@ -3,9 +3,26 @@ import { panelOf, type ViewName } from "../bench/panel-views";
 import type { LayoutName } from "../bench/view-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 
-const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.displacement"]);
-const TRACKING = scopeConfig(["model.tracking_error"]);
-const VOLTAGE = scopeConfig(["reference.voltage", "drive.voltage"]);
+/** A scope of a layout, with its title. */
+interface Scope {
+  id: string;
+  title: string;
+  scope: ScopeConfig;
+}
+
+const scope = (id: string, title: string, signals: string[]): Scope => ({ id, title, scope: scopeConfig(signals) });
+
+/** Displacement and tracking error, and the voltages. */
+const SIMULATED = [
+  scope("motion", "Displacement", ["plant.displacement", "sensor.displacement", "model.displacement"]),
+  scope("tracking", "Tracking error", ["model.tracking_error"]),
+  scope("voltage", "Voltage", ["reference.voltage", "drive.voltage"]),
+];
+/** Of a record: nothing drove the device along the reference of the bench. */
+const RECORDED = [
+  scope("motion", "Displacement", ["plant.displacement", "sensor.displacement"]),
+  scope("voltage", "Voltage", ["drive.voltage"]),
+];
 
 /** The smallest size of the loop; the panels below it are as wide. */
 export const LOOP_PX = { width: 326, height: 312 };
@@ -55,11 +72,11 @@ export function size(
     api.getPanel(id)?.api.setSize({ ...(w ? { width: w * width } : {}), ...(h ? { height: h * height } : {}) });
 }
 
-/** Displacement and tracking error, one behind the other; the voltage too where its tab has room. */
-function addMotion(api: DockviewApi, wide: boolean): void {
-  addTo(api, "motion", "time", {}, MOTION, "Displacement");
-  addTo(api, "tracking", "time", { within: "motion", inactive: true }, TRACKING, "Tracking error");
-  if (wide) addTo(api, "voltage", "time", { within: "motion", inactive: true }, VOLTAGE, "Voltage");
+/** Two scopes, one behind the other; the third too where its tab has room. */
+function addMotion(api: DockviewApi, [front, ...behind]: Scope[], wide: boolean): void {
+  addTo(api, front.id, "time", {}, front.scope, front.title);
+  for (const { id, scope, title } of wide ? behind : behind.slice(0, 1))
+    addTo(api, id, "time", { within: front.id, inactive: true }, scope, title);
 }
 
 /** Panels one behind the other, the first in front. */
@@ -70,12 +87,13 @@ export function addBehind(api: DockviewApi, front: string, views: ViewName[]): v
 /** The layouts everybody has; sizes are shares of the page. */
 export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, height: number) => void>;
 
-/** The layouts for a device with one displacement. */
-export const BUILT_IN: Layouts = {
+/** Layouts around some scopes, the first of which is `motion`. */
+const layoutsAround = (scopes: Scope[]): Layouts => ({
   lecture(api, width, height) {
-    addTo(api, "motion", "time", {}, MOTION, "Displacement");
+    const [front, second] = scopes;
+    addTo(api, front.id, "time", {}, front.scope, front.title);
     addTo(api, "lanes", "lanes", { right: "motion" });
-    addTo(api, "tracking", "time", { below: "motion" }, TRACKING, "Tracking error");
+    addTo(api, second.id, "time", { below: "motion" }, second.scope, second.title);
     addTo(api, "faults", "faults", { below: "lanes" });
     const wide = width >= THREE_COLUMNS_PX;
     addTo(api, "view3d", "view3d", wide ? { right: "faults" } : { within: "faults", inactive: true });
@@ -87,7 +105,7 @@ export const BUILT_IN: Layouts = {
   },
   lab(api, width, height) {
     const wide = width >= THREE_COLUMNS_PX;
-    addMotion(api, wide);
+    addMotion(api, scopes, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
     addBehind(api, "schematic", ["device"]);
@@ -102,7 +120,7 @@ export const BUILT_IN: Layouts = {
   },
   research(api, width, height) {
     const wide = width >= THREE_COLUMNS_PX;
-    addMotion(api, wide);
+    addMotion(api, scopes, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
     addBehind(api, "faults", wide ? ["controllers", "sheet"] : ["controllers"]);
@@ -120,4 +138,10 @@ export const BUILT_IN: Layouts = {
       motion: { h: 0.48 },
     });
   },
-};
+});
+
+/** The layouts for a device with one displacement. */
+export const BUILT_IN = layoutsAround(SIMULATED);
+
+/** The layouts for a record of such a device. */
+export const BUILT_IN_RECORD = layoutsAround(RECORDED);

@@ -8,7 +8,7 @@ import type { PanelName } from "../bench/panel-views";
 import { showError } from "../bench/send";
 import { chooseLayout, type LayoutName, useView } from "../bench/view-store";
 import { useBench } from "../stream/bench-store";
-import { BUILT_IN, THREE_COLUMNS_PX } from "./built-in-layouts";
+import { BUILT_IN, BUILT_IN_RECORD, THREE_COLUMNS_PX } from "./built-in-layouts";
 import { layoutHistory } from "./layout-history";
 import { PANELS } from "./panels";
 import { BUILT_IN_AXES } from "./two-axis-layouts";
@@ -33,6 +33,8 @@ const LINK = /^[2-9a-z]{8}$/;
 
 /** Whether the layout is for a bench with axes. */
 let axes = false;
+/** Whether it is for a record of a device. */
+let record = false;
 /** Whether the dock has room for a third column; a built-in layout is kept for either case. */
 let wide = true;
 /** A layout that came before there was a dock to show it in. */
@@ -40,9 +42,10 @@ let coming: { shared: SharedLayout; name: string } | undefined;
 
 const kind = () => (axes ? "axes." : "");
 const LIST = () => storageName(`combbench.layouts.${kind()}own`);
+const ofBench = () => (record && !axes ? "record." : kind());
 const room = () => (wide ? "" : "narrow.");
 const storageKey = (name: string) =>
-  storageName(`combbench.layout.4.${kind()}${isBuiltIn(name) ? room() : "own."}${name}`);
+  storageName(`combbench.layout.4.${isBuiltIn(name) ? ofBench() + room() : `${kind()}own.`}${name}`);
 
 export const isBuiltIn = (name: string): name is LayoutName => name in BUILT_IN;
 
@@ -56,9 +59,10 @@ const known = (name: string | undefined): string | undefined =>
 const keepList = (layouts: OwnLayout[]) => localStorage.setItem(LIST(), JSON.stringify(layouts));
 
 /** Lay the panels out for the benches of a kind; within one kind they keep their places. */
-export function layOutFor(withAxes: boolean): void {
-  if (withAxes === axes) return;
+export function layOutFor(withAxes: boolean, ofRecord: boolean): void {
+  if (withAxes === axes && ofRecord === record) return;
   axes = withAxes;
+  record = ofRecord;
   arrange(known(inAddress("layout")) ?? known(useView.getState().layout) ?? "lab");
   layoutHistory.forget();
 }
@@ -74,7 +78,9 @@ export function attachDock(api: DockviewApi): void {
     if (!panel.title || panel.title === panel.id)
       panel.api.setTitle(PANELS[panel.view.contentComponent as PanelName].title);
   });
-  axes = hasAxes(useBench.getState().bench);
+  const { bench } = useBench.getState();
+  axes = hasAxes(bench);
+  record = Boolean(bench?.record);
   const asked = inAddress("layout");
   arrange(known(asked) ?? known(useView.getState().layout) ?? "lecture");
   layoutHistory.watch(api);
@@ -221,6 +227,6 @@ function arrange(
   if (saved && restoreLayout(saved)) return;
   localStorage.removeItem(storageKey(name));
   api.clear();
-  const builtIn = (axes ? BUILT_IN_AXES : BUILT_IN)[isBuiltIn(like) ? like : "lab"];
-  builtIn(api, widthOf(api), api.height || window.innerHeight);
+  const layouts = axes ? BUILT_IN_AXES : record ? BUILT_IN_RECORD : BUILT_IN;
+  layouts[isBuiltIn(like) ? like : "lab"](api, widthOf(api), api.height || window.innerHeight);
 }

@@ -54,6 +54,17 @@ it("has a lecture of two scopes, Diagnosis, Faults and 3D, and no more", () => {
   expect(kinds(dock).filter((kind) => kind === "scope")).toHaveLength(2);
 });
 
+it("shows displacement and voltage of a record, and keeps the layouts of other benches", () => {
+  const record = { ...flat, record: { key: "a".repeat(64), samples: 100, labels: [] } };
+  const dock = layOut("lecture", record);
+  expect(titles(dock).sort()).toEqual(["3D", "Diagnosis", "Displacement", "Faults", "Voltage"]);
+  act(() => setLayout("lab"));
+  expect(titles(dock)).not.toContain("Tracking error");
+  act(() => connect(flat));
+  act(() => setLayout("lecture"));
+  expect(titles(dock)).toContain("Tracking error");
+});
+
 const EVERY = [flat, gyroscope].flatMap((bench) =>
   NAMES.flatMap((name) => WIDTHS.map((width) => ({ bench, name, width, of: bench === flat ? "plate" : "gyroscope" }))),
 );

@@ -34,9 +34,10 @@ const components = Object.fromEntries((Object.keys(VIEWS) as PanelName[]).map((n
 /** The panels, docked; they keep their places in this browser. */
 export function Workspace() {
   const axes = useBench((s) => s.bench && hasAxes(s.bench));
+  const ofRecord = useBench((s) => Boolean(s.bench?.record));
   useEffect(() => {
-    if (axes !== undefined) layOutFor(axes);
-  }, [axes]);
+    if (axes !== undefined) layOutFor(axes, ofRecord);
+  }, [axes, ofRecord]);
   return (
     <main className="workspace" onKeyDownCapture={closeByKey}>
       <DockviewReact
