@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from core.board.document import Document
 from core.errors import InputError
 from core.measured_record import PlayedRecord
 from core.units import MG_PER_KG
-from scenarios.records.calibration import Calibration
 from scenarios.schema import Scenario
+
+if TYPE_CHECKING:  # scipy, which a server may do without
+    from scenarios.records.calibration import Calibration
 
 KEPT = (
     "reference",

@@ -244,7 +244,8 @@ def test_every_number_of_a_device_changes_a_signal() -> None:
             old = getattr(spec.device if table == "device" else spec.device.gyroscope, name)
             if name in ("id", "title", "source", *TABLES_OF_A_DEVICE) or isinstance(old, str):
                 continue
-            value = 25 if name == "fingers" else 1.01 * old if old else 0.01
+            others: dict[str, Any] = {"fingers": 25, "fringing": "free"}
+            value = others.get(name, 1.01 * old if old else 0.01)
             found = parse(with_values(plain, {f"{table}.{name}": value}))
             wrong += [f"{table}.{name}"] if trace(found) == trace(spec) else []
     assert wrong == []

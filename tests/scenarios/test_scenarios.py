@@ -272,7 +272,7 @@ TABLES_OF_A_DEVICE = {"id", "geometry", "transfer_function", "gyroscope", "drawn
 def test_set_reaches_every_value_of_a_device():
     base = Scenario.load(document())
     for name in set(Device.model_fields) - TABLES_OF_A_DEVICE:
-        value: Any = {"title": "x", "source": "y", "fingers": 25}.get(name, 2.5)
+        value: Any = {"title": "x", "source": "y", "fingers": 25, "fringing": "free"}.get(name, 2.5)
         assert getattr(with_values(base, {f"device.{name}": value}).spec.device, name) == value, name
 
 

@@ -335,9 +335,10 @@ WITHOUT = {
     or path.startswith((f"{BENCH}/commands", f"{BENCH}/snapshots", f"{BENCH}/driving", f"{BENCH}/fork"))
     or path
     in (f"{BENCH}/variant", f"{BENCH}/identification", f"{BENCH}/diagnosers/{{name}}/aliases", f"{API}/qr", "/join")
-    or path == f"{API}/lectures/{{lecture_id}}/cues/{{number}}"
+    or path in (f"{API}/lectures/{{lecture_id}}/cues/{{number}}", f"{API}/instruments/{{name}}/benches")
 }
-"""Doors that ask no database, or the same as others: a search as a run, the page to join as the door of the class."""
+"""Doors that ask no database, or the same as others: a search as a run, a bench on an instrument as any bench, the
+page to join as the door of the class."""
 AFTER_ALL: dict[tuple[str, str], Callable[[Live, dict[str, str]], bool]] = {
     ("POST", f"{BENCH}/recordings/{{recording_id}}/stop"): lambda live, ids: (
         not live.service.benches.get(ids["bench_id"]).recordings.under_way

@@ -87,6 +87,11 @@ def test_a_data_folder_opens(revision: str, serve: Any, tmp_path: Path) -> None:
         if revision >= "0018":
             (line,) = found(f"classes/{group['id']}/games/be-the-filter?seed=7")["table"]
             assert line["name"] == "Ada"
+        if revision >= "0020":
+            (record,) = found("records")["records"]
+            assert (record["name"], record["samples"]) == ("device.csv", 2000)
+            (device,) = found("measured-devices")["devices"]
+            assert (device["name"], device["values"]) == ("device of Tuesday", {"device.mass_kg": 2.3e-10})
         texts = [entry["text"] for entry in found(f"classes/{group['id']}/audit")["entries"]]
         assert "opened the class Tuesday" in texts
 

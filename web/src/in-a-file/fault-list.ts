@@ -1,5 +1,6 @@
 import { severityScale, severityText } from "../bench/severity";
 import { groupBy } from "../ui/group-by";
+import { roundTo } from "../ui/unit-scale";
 import { button, element, write } from "./dom";
 import type { FileBench } from "./file-bench";
 import type { FileFault } from "./file-document";
@@ -42,7 +43,7 @@ export class FaultList {
     const severity = () => {
       const value = Number(slider.value);
       if (grid) return grid[value];
-      return value === fault.suggested ? value : Number((Math.round(value / step) * step).toPrecision(6));
+      return value === fault.suggested ? value : roundTo(Math.round(value / step) * step, 6);
     };
     const inject = () => act(() => severity() !== 0 && this.bench.apply({ fault: name, severity: severity() }));
     const press = button("Inject", () =>

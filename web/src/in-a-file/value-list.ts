@@ -1,4 +1,5 @@
 import { formatShort } from "../ui/format";
+import { roundTo } from "../ui/unit-scale";
 import { element, write } from "./dom";
 import type { FileBench } from "./file-bench";
 import type { FileValue } from "./file-document";
@@ -29,7 +30,7 @@ export class ValueList {
       const at = Number(slider.value);
       if (grid) return grid[at];
       const step = (high - low) / STEPS;
-      return Math.min(high, Math.max(low, Number((low + Math.round((at - low) / step) * step).toPrecision(6))));
+      return Math.min(high, Math.max(low, roundTo(low + Math.round((at - low) / step) * step, 6)));
     };
     const text = element("span", { className: "severity" });
     const show = () => write(text, formatShort(chosen(), value.unit));

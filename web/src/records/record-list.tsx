@@ -5,6 +5,7 @@ import { api } from "../api/api";
 import type { KeptRecord } from "../api/types";
 import styles from "../app/dialogs.module.css";
 import { formatSi } from "../ui/format";
+import { roundTo } from "../ui/unit-scale";
 import { useRecords } from "./open-record";
 
 /** The records that are here, the newest first. */
@@ -53,6 +54,6 @@ export function RecordList({ onError }: { onError(error: unknown): void }) {
 export const brief = ({ samples, rate_khz, labels }: KeptRecord): string =>
   [
     formatSi(samples / rate_khz, "ms"),
-    `${samples} samples at ${Number(rate_khz.toPrecision(6))} kHz`,
+    `${samples} samples at ${roundTo(rate_khz, 6)} kHz`,
     labels.length > 0 ? `labels ${labels.join(", ")}` : "no labels",
   ].join(" · ");
