@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from core.block import Context
 from core.board import changes
 from core.board.board import Board
 from core.board.commands import Command, HealFaults, Inject
@@ -58,7 +59,7 @@ class Lane(Board):
         self.followers: list[Lane] = []
         self.course = course
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
-        self._unlike: dict[int, set[str]] = {}
+        self._unlike: dict[int, tuple[Context, set[str]]] = {}
         self._scores: tuple[int, dict[str, Scores]] | None = None
         if leader is not None:
             leader.followers.append(self)
@@ -124,9 +125,9 @@ class Lane(Board):
         """Take over the parameters of a row: the same ones, unless the facts that they are made of differ."""
         instance = row.instance
         context = self.spec.context(instance.every, instance.axis)
-        if id(row.context) not in self._unlike:
-            self._unlike[id(row.context)] = unlike(context, row.context)
-        is_shared = self._unlike[id(row.context)].isdisjoint(row.read)
+        if id(row.context) not in self._unlike:  # kept with its result, so that no other context gets its id
+            self._unlike[id(row.context)] = row.context, unlike(context, row.context)
+        is_shared = self._unlike[id(row.context)][1].isdisjoint(row.read)
         start = int(self.wiring.table[row.number, P_OFFSET])
         self.wiring.instances[row.number] = instance
         self.wiring.p[start : start + len(row.numbers)] = row.numbers if is_shared else instance.packed(context)

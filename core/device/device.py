@@ -65,7 +65,7 @@ class Device(BlockParams):
         =-4n\varepsilon_0\frac{t}{g}V_b\,v ,
 
     so a positive voltage pulls towards -x. Equation 5.2.1 puts *identical* voltages on both stators, which
-    gives no force at all. The force is that of plates, unless ``fringing`` adds the field beyond them (1.5).
+    gives no force at all. The force assumes plates, unless ``fringing`` adds the field beyond them (1.5).
 
     Either mass, damping and stiffness are given, or ``geometry``; a value given in addition to a geometry wins. A
     ``transfer_function`` describes a plant that is no resonator, and has none of these. A gyroscope moves along two
@@ -227,7 +227,7 @@ class Device(BlockParams):
             return self.force_n_per_v / (2.0 * abs(self.bias_v))
         drawn = self.drawing
         plates = 2.0 * (self.fingers or drawn.fingers) * EPSILON_0 * drawn.thickness_um / drawn.gap_um
-        return plates * self.fringing_factor if self.fringing is not None else plates
+        return plates * self.fringing_factor
 
     @property
     def signed_force_n_per_v(self) -> float:

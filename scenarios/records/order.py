@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from typing import Any
 
 from core.errors import InputError
 from core.format import format_short
@@ -14,6 +15,7 @@ LONGEST_GAP_S = 10.0
 NS_PER_MS = 1e6
 REMEMBERED = 1000
 """Gaps in the numbers that are remembered, to know a late block from a doubled one."""
+COUNTED = ("blocks", "lost_blocks", "late_blocks", "doubled_blocks", "lost_samples", "breaks")
 
 
 @dataclass
@@ -44,8 +46,12 @@ class BlockOrder:
     _end_ns: int = 0
     _skipped: deque[tuple[int, int]] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
 
+    def counts(self) -> dict[str, Any]:
+        """Return the numbers of blocks, lost samples and breaks so far."""
+        return {name: getattr(self, name) for name in COUNTED}
+
     def begin(self, session: str) -> None:
-        """Begin a connection: in the same session numbers and clock go on, otherwise both begin again."""
+        """Begin a connection: numbers and clock of the same session continue, others begin again."""
         if not session or session != self._session:
             self._next = None
             self._skipped.clear()

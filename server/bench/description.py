@@ -97,7 +97,7 @@ def _instrument(bench: LiveBench) -> InstrumentStatus | None:
     record = live_record(bench.board)
     if record is None:
         return None
-    order, arrivals, now = record.order, record.arrivals, bench.clock()
+    arrivals, now = record.arrivals, bench.clock()
     return InstrumentStatus(
         source=record.source,
         is_connected=record.is_connected,
@@ -108,12 +108,7 @@ def _instrument(bench: LiveBench) -> InstrumentStatus | None:
         latency_p95_ms=arrivals.latency_p95_ms,
         record=record.key,
         samples=record.samples,
-        blocks=order.blocks,
-        lost_blocks=order.lost_blocks,
-        late_blocks=order.late_blocks,
-        doubled_blocks=order.doubled_blocks,
-        lost_samples=order.lost_samples,
-        breaks=order.breaks,
+        **record.order.counts(),
     )
 
 

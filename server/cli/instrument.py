@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from scenarios.outside.oscilloscope import GeneratorCommands
 
 GAP = 2
-"""Samples that at least lie between two shots by their times, so that two shots never pass for one."""
+"""The fewest samples between two shots by their times: two shots are never taken for a single shot."""
 MOST_TABLE = 1_000_000
 """Samples of the longest table for a generator."""
 

@@ -81,7 +81,7 @@ class Source:
         return self._clock() - self._last >= SILENT_S
 
     def enter(self, connection: InstrumentReader, header: LineHeader, address: str) -> None:
-        """Send by this connection from now on; a record goes on if the header still describes it.
+        """Send by this connection from now on; a record continues if the header still describes it.
 
         Raises
         ------
@@ -145,7 +145,6 @@ class Source:
 
     def status(self) -> SourceStatus:
         """Describe the source."""
-        order = self.order
         return SourceStatus(
             name=self.name,
             address=self.address,
@@ -154,12 +153,7 @@ class Source:
             units=self.header.units,
             rate_khz=self.header.rate_khz,
             received_khz=self._arrivals.rate_khz(self._clock()),
-            blocks=order.blocks,
-            lost_blocks=order.lost_blocks,
-            late_blocks=order.late_blocks,
-            doubled_blocks=order.doubled_blocks,
-            lost_samples=order.lost_samples,
-            breaks=order.breaks,
+            **self.order.counts(),
             records=len(self.records),
             refused=self.refused,
         )

@@ -87,7 +87,7 @@ export function addBehind(api: DockviewApi, front: string, views: ViewName[]): v
 /** The layouts everybody has; sizes are shares of the page. */
 export type Layouts = Record<LayoutName, (api: DockviewApi, width: number, height: number) => void>;
 
-/** Layouts around some scopes, the first of which is `motion`. */
+/** Layouts around some scopes; `motion` is the first. */
 const layoutsAround = (scopes: Scope[]): Layouts => ({
   lecture(api, width, height) {
     const [front, second] = scopes;

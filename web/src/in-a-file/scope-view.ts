@@ -13,7 +13,7 @@ import type { TimeWindow } from "./time-window";
 
 export const FONT_PX = 12;
 const LINE_PX = 1.6;
-/** Nobody can distinguish more signals. */
+/** More signals cannot be distinguished. */
 const MOST = 12;
 
 /** A scope of the page over the signals of a preset. */
