@@ -93,6 +93,9 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
 
     def __init__(self, session: LiveBench) -> None:
         super().__init__(session, (*SIGNALS, *_bank(session)))
+        places = dict(zip(self._signals, self._indices, strict=True))
+        self._moved = [places[name] for name in MOVED if name in places]
+        self._own = [name for name in SIGNALS if name in places]
         self.layout = Layout(session.board.spec.device.drawing)
         self._light = {
             name: [signal.index for signal in session.signals if signal.name.startswith(f"{name}.")] for name in LASERS
@@ -133,10 +136,10 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         tick, is_strobed = moment(head, period, rate_ticks_s, time.monotonic())
         tick = max(tick, history.first_tick)
         values = finite(history.read(self._indices, tick, tick + 1))[:, 0]
-        known = dict.fromkeys(SIGNALS, 0.0) | dict(zip(self._signals, values.tolist(), strict=True))
+        own, models = values[: len(self._own)].tolist(), values[len(self._own) :]
+        known = dict.fromkeys(SIGNALS, 0.0) | dict(zip(self._own, own, strict=True))
         x, reference, turn, shift, contact, short, measured = (known[name] for name in SIGNALS)
-        moved = [self._indices[at] for at, name in enumerate(self._signals) if name in MOVED]
-        self._magnify(history.columns(moved, head - round(3 * (period or 1000)), head, 1))
+        self._magnify(history.columns(self._moved, head - round(3 * (period or 1000)), head, 1))
         plant = spec.plant.params
         turns = isinstance(plant, PlaneParams)
         combs = combs_of(shift, 1e-3 * turn, self.layout.tip_um, plant)
@@ -144,7 +147,7 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         pose = ResonatorPose(
             displacement_um=x * self._factor,
             reference_um=reference * self._factor,
-            estimate_um=self._estimate(measured, values[sum(name in SIGNALS for name in self._signals) :]),
+            estimate_um=self._estimate(measured, models),
             shift_um=shift,
             turn=1e-3 * turn * self._turn_factor,
             combs_um=combs,
