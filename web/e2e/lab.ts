@@ -77,19 +77,13 @@ export async function front(page: Page, panel: string, view?: string): Promise<v
   await tab.click();
   await expect(tab).toHaveAttribute("aria-selected", "true");
   if (!view) return;
-  const row = page.getByRole("group", { name: `Views of ${panel}`, exact: true });
-  const menu = page.getByRole("button", { name: new RegExp(`^Views of ${panel}: `) });
-  await expect(row.or(menu)).toBeVisible();
-  if (await row.isVisible()) await row.getByRole("button", { name: view, exact: true }).click();
-  else {
-    await menu.click();
-    await page.getByRole("menuitem", { name: view, exact: true }).click();
-  }
+  await page.getByRole("button", { name: new RegExp(`^Views of ${panel}: `) }).click();
+  await page.getByRole("menuitem", { name: view, exact: true }).click();
 }
 
 /** Find a panel, a view or a scope in the menu of panels, and open the first that is found. */
 export async function openPanel(page: Page, words: string): Promise<void> {
-  await page.getByRole("button", { name: "Add or close panels" }).first().click();
+  await page.locator(".dv-active-group").getByRole("button", { name: "Add or close panels" }).click();
   await page.getByRole("searchbox", { name: /^Search panels/ }).fill(words);
   await page.keyboard.press("Enter");
   await expect(page.getByRole("menu")).toHaveCount(0);
@@ -132,3 +126,9 @@ const FACTORS: Record<string, string> = { m: "mass", k: "stiffness", b: "damping
 /** The page's name of a hypothesis: "m+5" is "mass +5 %". */
 export const inWords = (name: string): string =>
   name.replace(/^([mkb])\+(\d+)$/, (_, factor, percent) => `${FACTORS[factor]} +${percent}\u00a0%`);
+
+/** Choose a tool of a scope: its trigger, or its cursors. */
+export async function chooseTool(scope: Locator, name: RegExp): Promise<void> {
+  await scope.getByRole("button", { name: "Tools", exact: true }).click();
+  await scope.page().getByRole("menuitem", { name }).click();
+}

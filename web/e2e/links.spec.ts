@@ -1,6 +1,6 @@
 import type { Page } from "@playwright/test";
 import { benchOf, expect, test } from "./classroom";
-import { chooseMore, front } from "./lab";
+import { chooseMore, chooseTool, front } from "./lab";
 import type { LabServer } from "./lab-server";
 
 const momentOf = (server: LabServer, page: Page) =>
@@ -18,7 +18,7 @@ test("links to an experiment and to a layout open the same tick, log, cursors an
   await page.getByRole("button", { name: "Pause" }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await front(page, "Log", "Events");
-  await page.getByRole("button", { name: "Measure" }).first().click();
+  await chooseTool(page.getByRole("region", { name: /^Scope: / }).first(), /^Measure/);
   const cursor = page.getByRole("slider", { name: "Cursor A" });
   await cursor.press("ArrowLeft");
   await cursor.press("ArrowLeft");

@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import { benchOf } from "./classroom";
-import { expect, front, pictureOf, SCOPE_CANVAS, test } from "./lab";
+import { chooseTool, expect, front, pictureOf, SCOPE_CANVAS, test } from "./lab";
 
 interface Capture {
   trigger_tick: number;
@@ -32,7 +32,7 @@ test("a scope moves with device time, looks back while it runs on, and measures 
   await live.click();
   await expect(live).toHaveAttribute("aria-pressed", "true");
 
-  await scope.getByRole("button", { name: "Measure" }).click();
+  await chooseTool(scope, /^Measure/);
   const figures = scope.getByRole("region", { name: "Measurements" });
   const row = figures.getByRole("row", { name: /drive voltage/ });
   await passes(1);
@@ -51,7 +51,7 @@ test("a scope moves with device time, looks back while it runs on, and measures 
   await expect(scope.getByRole("button", { name: "PAUSED" })).toBeVisible();
 
   const save = async (kind: string) => {
-    await scope.getByRole("button", { name: "Export" }).click();
+    await scope.getByRole("button", { name: "Tools", exact: true }).click();
     const [download] = await Promise.all([
       page.waitForEvent("download"),
       page.getByRole("menuitem", { name: kind, exact: true }).click(),
@@ -91,7 +91,7 @@ test("the captures of a trigger outlive the history: previous, next, newest, by 
   await page.getByRole("button", { name: "Pause", exact: true }).click();
   await expect(page.getByTestId("bench-state")).toHaveText("paused");
   await expect(strip).toBeHidden();
-  await scope.getByRole("button", { name: "Trigger", exact: true }).click();
+  await chooseTool(scope, /^Trigger/);
   await expect(words).toHaveText("no captures yet");
   await stepTo(30_000);
   await expect(words).toHaveText(/^50\scaptures kept$/);

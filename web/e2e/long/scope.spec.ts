@@ -1,5 +1,5 @@
 import type { Locator, Page } from "@playwright/test";
-import { expect, openPanel, test } from "../lab";
+import { chooseTool, expect, openPanel, test } from "../lab";
 import { SCREENS, showOn } from "../screens";
 
 /** Parts that a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
@@ -51,23 +51,11 @@ test("at first sight every scope has its axis, one row of names, and traces that
 test("the strip of captures has room on every screen", async ({ page, openBench }) => {
   await openBench("lab");
   const scope = page.getByRole("region", { name: /^Scope: plant\.displacement/ }).first();
-  const trigger = scope.getByRole("button", { name: "Trigger", exact: true });
-  const tools = scope.getByRole("button", { name: "Tools", exact: true });
+  await chooseTool(scope, /^Trigger/);
   for (const screen of SCREENS) {
     await showOn(page, screen);
     const strip = scope.getByRole("group", { name: "Captures", exact: true });
-    // the toolbar folds into one menu, or out of it, some time after the screen has changed
-    await expect(async () => {
-      if (await tools.isVisible()) {
-        await tools.click({ timeout: 1000 });
-        const hold = page.getByRole("menuitem", { name: /^Trigger/ });
-        await expect(page.getByRole("menuitem").first()).toBeFocused({ timeout: 1000 });
-        if (await hold.isVisible()) await hold.click({ timeout: 1000 });
-        else await page.keyboard.press("Escape");
-      } else if ((await trigger.getAttribute("aria-pressed", { timeout: 1000 })) === "false")
-        await trigger.click({ timeout: 1000 });
-      await expect(strip).toBeVisible({ timeout: 1000 });
-    }).toPass();
+    await expect(strip).toBeVisible();
     await expect.poll(() => strip.evaluate((box) => box.scrollWidth <= box.clientWidth)).toBe(true);
   }
 });

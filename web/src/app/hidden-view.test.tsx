@@ -59,7 +59,9 @@ it("says in one line that a view is hidden, and opens a tool in its place", asyn
   await user.click(screen.getByRole("button", { name: "Cursors" }));
   expect(screen.queryByRole("region", { name: "Spectrum" })).not.toBeInTheDocument();
   expect(screen.getByRole("region", { name: "Scope: sensor.displacement, drive.voltage" })).toBeVisible();
-  expect(screen.getByRole("button", { name: "Measure" })).toHaveAttribute("aria-pressed", "true");
+  await user.click(screen.getByRole("button", { name: "Tools" }));
+  expect(await screen.findByRole("menuitem", { name: "Without cursors and figures" })).toBeVisible();
+  await user.keyboard("{Escape}");
   await user.click(screen.getByRole("button", { name: "Cursors" }));
   expect(within(hiddenView).queryByRole("region")).not.toBeInTheDocument();
 });

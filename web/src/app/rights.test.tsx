@@ -30,7 +30,7 @@ beforeEach(() => {
   server.on("GET", "/devices", { devices: [], geometry: [] });
 });
 
-const DRIVES = ["Pause", "Step", "÷2: half as fast", "×2: twice as fast"];
+const DRIVES = ["Pause", "Step"];
 const CHANGES = [/^Undo/, /^Redo/, /^Record/];
 const TEACHES = [/^Fork/, /^Keep this moment/, /^Share/];
 

@@ -9,8 +9,6 @@ import { ViewChoice } from "./view-choice";
 
 const flat = (await recordedBench("first-look")).bench;
 const gyroscope = (await recordedBench("gyroscope")).bench;
-const WIDE = 800;
-const NARROW = 80;
 
 /** A docked panel with its kind and its parameters alone. */
 function docked(kind: PanelName, params: object = {}) {
@@ -32,29 +30,34 @@ function docked(kind: PanelName, params: object = {}) {
   return { panel: panel as unknown as IDockviewPanel, heard };
 }
 
-function mountChoice(kind: PanelName, { bench = flat, room = WIDE, params = {} } = {}) {
+function mountChoice(kind: PanelName, { bench = flat, params = {} } = {}) {
   connect(bench);
   const { panel, heard } = docked(kind, params);
-  const { user, unmount } = mount(<ViewChoice panel={panel} room={room} />);
+  const { user, unmount } = mount(<ViewChoice panel={panel} />);
   return { panel, heard, user, unmount };
 }
-const names = () => screen.getAllByRole("button").map((button) => button.textContent);
+/** The names of the views, from the open menu. */
+const names = async (user: ReturnType<typeof mount>["user"]) => {
+  await user.click(screen.getByRole("button"));
+  return (await screen.findAllByRole("menuitem")).map((item) => item.textContent);
+};
 
-it("has the views of a panel in a row, the shown one pressed", () => {
-  mountChoice("diagnosis", { params: { view: "labs" } });
-  expect(screen.getByRole("group", { name: "Views of Diagnosis" })).toBeVisible();
-  expect(names()).toEqual(["Lanes", "Hypotheses", "Noise and memory", "Scoreboard"]);
-  expect(screen.getByRole("button", { pressed: true })).toHaveTextContent("Noise and memory");
+it("has the views of a panel in a menu, the shown view on its button", async () => {
+  const { user } = mountChoice("diagnosis", { params: { view: "labs" } });
+  expect(screen.getByRole("button", { name: "Views of Diagnosis: Noise and memory" })).toBeVisible();
+  expect(await names(user)).toEqual(["Lanes", "Hypotheses", "Noise and memory", "Scoreboard"]);
+  const marks = screen.getAllByRole("menuitem").map((item) => item.getAttribute("aria-current"));
+  expect(marks).toEqual(["false", "false", "true", "false"]);
 });
 
 it("has the first view of a panel that names none, or none of its own", () => {
   mountChoice("lesson", { params: { view: "lanes" } });
-  expect(screen.getByRole("button", { pressed: true })).toHaveTextContent("Lab sheet");
+  expect(screen.getByRole("button", { name: "Views of Lesson: Lab sheet" })).toBeVisible();
 });
 
-it("has the views that suit the bench alone, and no choice of one", () => {
-  const { unmount } = mountChoice("diagnosis", { bench: gyroscope });
-  expect(names()).toEqual(["Lanes", "Scoreboard"]);
+it("has the views that suit the bench alone, and no choice of one", async () => {
+  const { unmount, user } = mountChoice("diagnosis", { bench: gyroscope });
+  expect(await names(user)).toEqual(["Lanes", "Scoreboard"]);
   unmount();
   mountChoice("why");
   expect(screen.queryByRole("button")).not.toBeInTheDocument();
@@ -63,22 +66,12 @@ it("has the views that suit the bench alone, and no choice of one", () => {
 it("turns the panel, keeps the rest of its parameters, and follows when others turn it", async () => {
   const scope = { signals: ["plant.displacement"] };
   const { panel, user } = mountChoice("scope", { params: { scope } });
-  await user.click(screen.getByRole("button", { name: "Spectrum" }));
+  await user.click(screen.getByRole("button", { name: "Views of Scope: Time" }));
+  await user.click(await screen.findByRole("menuitem", { name: "Spectrum" }));
   expect(panel.params).toEqual({ scope, view: "spectrum" });
-  expect(screen.getByRole("button", { pressed: true })).toHaveTextContent("Spectrum");
+  expect(screen.getByRole("button", { name: "Views of Scope: Spectrum" })).toBeVisible();
   act(() => panel.api.updateParameters({ scope, view: "phase" }));
-  expect(screen.getByRole("button", { pressed: true })).toHaveTextContent("Phase plane");
-});
-
-it("has the views in a menu where the bar of tabs has no room for the row", async () => {
-  const { panel, user } = mountChoice("diagnosis", { room: NARROW });
-  await user.click(screen.getByRole("button", { name: "Views of Diagnosis: Lanes" }));
-  const items = await screen.findAllByRole("menuitem");
-  expect(items.map((item) => item.textContent)).toEqual(["Lanes", "Hypotheses", "Noise and memory", "Scoreboard"]);
-  expect(items.map((item) => item.getAttribute("aria-current"))).toEqual(["true", "false", "false", "false"]);
-  await user.click(items[3]);
-  expect(panel.params).toEqual({ view: "scores" });
-  expect(screen.getByRole("button", { name: "Views of Diagnosis: Scoreboard" })).toBeVisible();
+  expect(screen.getByRole("button", { name: "Views of Scope: Phase plane" })).toBeVisible();
 });
 
 it("stops to follow a panel once it is gone", () => {

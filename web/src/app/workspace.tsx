@@ -24,11 +24,6 @@ import { ViewChoice } from "./view-choice";
 
 const THEME = { name: "combbench", className: "dockview-theme-combbench", gap: DOCK_GAP };
 
-/** The widths of an empty tab, of a letter of its title, and of the two buttons of a group, px. */
-const TAB_PX = 36;
-const LETTER_PX = 7.5;
-const BUTTONS_PX = 64;
-
 const components = Object.fromEntries((Object.keys(VIEWS) as PanelName[]).map((name) => [name, dockPanel(name)]));
 
 /** The panels, docked; they keep their places in this browser. */
@@ -107,12 +102,10 @@ function closeByKey(event: KeyboardEvent<HTMLElement>): void {
 
 function GroupActions({ containerApi, group, activePanel }: IDockviewHeaderActionsProps) {
   const maximised = useDockValue(containerApi.onDidMaximizedGroupChange, () => containerApi.hasMaximizedGroup());
-  const width = useDockValue(group.api.onDidDimensionsChange, () => group.api.width);
-  const tabs = group.panels.reduce((sum, panel) => sum + TAB_PX + LETTER_PX * (panel.title?.length ?? 0), 0);
   const fill = maximised ? "Back to all panels" : "Fill the page with this panel";
   return (
     <div className="dock-actions">
-      {activePanel && <ViewChoice panel={activePanel} room={width - tabs - BUTTONS_PX} />}
+      {activePanel && <ViewChoice panel={activePanel} />}
       <PanelMenu group={group} activePanel={activePanel} />
       <button
         type="button"

@@ -94,7 +94,12 @@ export function GalleryPage() {
       </header>
       {teaches && !item && <LectureList />}
       {value && cards.length > 0 ? (
-        <ul className={styles.grid} data-stale={error !== undefined} aria-label="Experiments">
+        <ul
+          className={styles.grid}
+          data-one={one !== undefined}
+          data-stale={error !== undefined}
+          aria-label="Experiments"
+        >
           {cards.map((card) => (
             <GalleryEntry
               key={card.id}

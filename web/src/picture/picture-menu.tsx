@@ -11,7 +11,7 @@ interface PictureMenuProps {
   take: TakePicture;
   /** The name of the picture, if there are several. */
   name?: string;
-  /** Tools of a narrow panel, above the picture; the button has a word then. */
+  /** Tools of a panel, above the picture; the button has a word then. */
   tools?: ReactNode;
   /** More that can be kept, below the picture. */
   children?: ReactNode;

@@ -20,17 +20,6 @@ it("shows the pace that is set and the one that is reached", () => {
   expect(words()).toContain("stands still");
 });
 
-it("doubles and halves the pace", async () => {
-  const board = connect(running);
-  const { user } = mount(<TimeScaleControl />);
-  await user.click(screen.getByRole("button", { name: "×2: twice as fast" }));
-  await user.click(screen.getByRole("button", { name: "÷2: half as fast" }));
-  expect(board.commands).toEqual([
-    { kind: "time_scale", value: 0.004 },
-    { kind: "time_scale", value: 0.001 },
-  ]);
-});
-
 it.each([
   ["Real time", 1],
   ["As fast as possible", null],

@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Group, Popover, Stack, Text, Tooltip } from "@mantine/core";
+import { Button, Group, Popover, Stack, Text } from "@mantine/core";
 import { useState } from "react";
 import { send } from "../../bench/send";
 import {
@@ -8,7 +8,6 @@ import {
   presetLabel,
   scaleMarks,
   sliderToTimeScale,
-  stepTimeScale,
   timeScaleToSlider,
 } from "../../bench/time-scale";
 import { useBench } from "../../stream/bench-store";
@@ -20,7 +19,7 @@ const set = (value: number | null) => send({ kind: "time_scale", value }, `Time 
 
 const FAST = { quiet_lead: "quiet lead, fast", skip: "skips, fast" };
 
-/** The speed of device time: halve it, double it, slide it, or set no limit; below it the achieved speed. */
+/** The speed of device time, and the achieved speed below it; a menu has a slider and presets. */
 export function TimeScaleControl() {
   const target = useBench((s) => s.bench?.time_scale ?? null);
   const achieved = useBench((s) => s.bench?.achieved_scale ?? 0);
@@ -35,11 +34,6 @@ export function TimeScaleControl() {
 
   return (
     <fieldset className="line" style={{ gap: 0 }} aria-label="Time scale" disabled={unknown}>
-      <Tooltip label="Half as fast ( [ )">
-        <ActionIcon size="md" aria-label="÷2: half as fast" onClick={() => set(stepTimeScale(target, 0.5))}>
-          ÷2
-        </ActionIcon>
-      </Tooltip>
       <Popover width={400} position="bottom">
         <Popover.Target>
           <button type="button" className={styles.target} title={`${againstRealTime(target)}: change it`}>
@@ -92,11 +86,6 @@ export function TimeScaleControl() {
           </Stack>
         </Popover.Dropdown>
       </Popover>
-      <Tooltip label="Twice as fast ( ] )">
-        <ActionIcon size="md" aria-label="×2: twice as fast" onClick={() => set(stepTimeScale(target, 2))}>
-          ×2
-        </ActionIcon>
-      </Tooltip>
     </fieldset>
   );
 }

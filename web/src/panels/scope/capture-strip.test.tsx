@@ -114,6 +114,7 @@ it("leaves a capture of another trigger", async () => {
 
 it("has no strip while it rolls", async () => {
   const { user } = await mountScope();
-  await user.click(screen.getByRole("button", { name: "Trigger" }));
+  await user.click(screen.getByRole("button", { name: "Tools" }));
+  await user.click(await screen.findByRole("menuitem", { name: /roll again$/ }));
   expect(screen.queryByRole("group", { name: "Captures" })).not.toBeInTheDocument();
 });

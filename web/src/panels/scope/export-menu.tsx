@@ -12,7 +12,7 @@ interface ExportMenuProps {
   plot: RefObject<ScopePlot | undefined>;
   /** The capture that the scope shows. */
   capture: CaptureMark | undefined;
-  /** Tools that a narrow scope has in this menu. */
+  /** Trigger and measure. */
   tools: ReactNode;
 }
 

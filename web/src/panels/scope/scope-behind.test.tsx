@@ -106,7 +106,8 @@ it("measures at the cursors and over the span, with units", async () => {
   const { board, user } = mountScope();
   board.frame({ [SIGNAL]: (tick) => tick / 1000 }, { head: 1000 });
   await drawOnce();
-  await user.click(screen.getByRole("button", { name: "Measure" }));
+  await user.click(screen.getByRole("button", { name: "Tools" }));
+  await user.click(await screen.findByRole("menuitem", { name: /^Measure/ }));
   await drawOnce();
   const strip = within(await screen.findByRole("region", { name: "Measurements" }));
   const cells = strip.getAllByRole("cell").map((cell) => cell.textContent?.replace(/\s/g, " "));
@@ -131,5 +132,5 @@ it("keeps names without room behind a button", async () => {
   const { user } = mount(<ScopePanel config={scopeConfig(names)} onChange={() => undefined} />);
   await user.click(screen.getByRole("button", { name: /^\+\d$/ }));
   const others = await screen.findByRole("list", { name: "Other signals" });
-  expect(within(others).getByRole("button", { name: "Remove model.displacement" })).toBeVisible();
+  expect(within(others).getAllByRole("listitem").at(-1)).toHaveTextContent(/model.*displacement/);
 });

@@ -1,5 +1,4 @@
 import { Popover } from "@mantine/core";
-import { IconX } from "@tabler/icons-react";
 import { type RefObject, useEffect, useRef } from "react";
 import { useNarrator } from "../../bench/narrator";
 import { stream } from "../../stream/stream";
@@ -15,14 +14,13 @@ const EVERY_MS = 90;
 interface ScopeLegendProps {
   traces: PlotTrace[];
   plot: RefObject<ScopePlot | undefined>;
-  onRemove(name: string): void;
 }
 
 /** Names and values in one row, names alone where values have no room; a button has the signals without room. */
-export function ScopeLegend({ traces, plot, onRemove }: ScopeLegendProps) {
+export function ScopeLegend({ traces, plot }: ScopeLegendProps) {
   const { list, fits, level } = useLegendRow(traces);
   const entry = (trace: PlotTrace, index: number, hidden = false) => (
-    <LegendEntry key={trace.name} trace={trace} index={index} hidden={hidden} plot={plot} onRemove={onRemove} />
+    <LegendEntry key={trace.name} trace={trace} index={index} hidden={hidden} plot={plot} />
   );
   return (
     <>
@@ -56,11 +54,10 @@ interface LegendEntryProps {
   index: number;
   hidden: boolean;
   plot: RefObject<ScopePlot | undefined>;
-  onRemove(name: string): void;
 }
 
 /** A trace and its value at the hovered time, or the newest one. */
-function LegendEntry({ trace, index, hidden, plot, onRemove }: LegendEntryProps) {
+function LegendEntry({ trace, index, hidden, plot }: LegendEntryProps) {
   const value = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     if (hidden) return;
@@ -81,14 +78,6 @@ function LegendEntry({ trace, index, hidden, plot, onRemove }: LegendEntryProps)
       <TraceSwatch colour={trace.colour} dash={trace.dash} />
       <SignalName name={trace.name} />
       <span className={styles.value} ref={value} />
-      <button
-        type="button"
-        className={styles.remove}
-        aria-label={`Remove ${trace.name}`}
-        onClick={() => onRemove(trace.name)}
-      >
-        <IconX size={12} />
-      </button>
     </li>
   );
 }

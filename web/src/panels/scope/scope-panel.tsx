@@ -143,11 +143,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
         exporter={(tools) => traces.length > 0 && <ExportMenu plot={plot} capture={capture} tools={tools} />}
       >
         {!config.measure && ( // the table names them too, and its rows want the room
-          <ScopeLegend
-            traces={traces}
-            plot={plot}
-            onRemove={(name) => onChange({ ...config, signals: config.signals.filter((s) => s !== name) })}
-          />
+          <ScopeLegend traces={traces} plot={plot} />
         )}
         <SignalPicker
           chosen={config.signals}

@@ -31,8 +31,8 @@ function mountScope(signals = [VOLTAGE], rest: Partial<ScopeConfig> = {}) {
 
 it("sends the trigger on a press, and says where it stands", async () => {
   const { board, user } = mountScope();
-  await user.click(screen.getByRole("button", { name: "Trigger" }));
-  expect(screen.getByRole("button", { name: "Trigger" })).toHaveAttribute("aria-pressed", "true");
+  await user.click(screen.getByRole("button", { name: "Tools" }));
+  await user.click(await screen.findByRole("menuitem", { name: /^Trigger/ }));
   expect(board.subscriptions[0]).toMatchObject({
     mode: "triggered",
     signals: [VOLTAGE],
@@ -100,7 +100,9 @@ it("adds and removes signals, found by name or meaning", async () => {
   await user.clear(screen.getByLabelText("Search signals"));
   await user.type(screen.getByLabelText("Search signals"), "no such thing");
   expect(screen.getByText("No signal of this bench matches.")).toBeVisible();
-  await user.click(screen.getByRole("button", { name: `Remove ${VOLTAGE}` }));
+  await user.clear(screen.getByLabelText("Search signals"));
+  await user.type(screen.getByLabelText("Search signals"), VOLTAGE);
+  await user.click(screen.getByRole("checkbox", { name: "voltage · V" }));
   expect(board.subscriptions[0].signals).toEqual(["plant.displacement"]);
 });
 

@@ -1,5 +1,4 @@
-import { ActionIcon, Menu, NativeSelect } from "@mantine/core";
-import { useElementSize } from "@mantine/hooks";
+import { Menu, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import type { ScopeConfig } from "../../stream/scope-config";
@@ -8,9 +7,6 @@ import { LiveButton } from "./live-button";
 import styles from "./scope.module.css";
 import { TriggerMenu, type TriggerState } from "./trigger-menu";
 
-/** In less than this the tools are in a menu. */
-const NARROW_PX = 760;
-
 interface ScopeToolbarProps {
   config: ScopeConfig;
   onChange(config: ScopeConfig): void;
@@ -18,21 +14,19 @@ interface ScopeToolbarProps {
   onLive(): void;
   trigger: TriggerState;
   onRearm(): void;
-  /** Saves the picture; tools without room in the row are in its menu. */
+  /** The menu of the tools, which also saves the picture. */
   exporter: (tools: ReactNode) => ReactNode;
   children: ReactNode;
 }
 
-/** The tools of a scope: signals, roll or trigger, window, live. */
+/** The bar of a scope: signals, time window, a menu of tools, live. */
 export function ScopeToolbar(props: ScopeToolbarProps) {
   const { config, onChange, past, onLive, trigger, onRearm, exporter, children } = props;
-  const { ref, width } = useElementSize();
-  const isNarrow = width > 0 && width < NARROW_PX;
   const isTriggered = config.mode === "triggered";
   const hold = () => onChange({ ...config, mode: isTriggered ? "roll" : "triggered" });
   const measure = () => onChange({ ...config, measure: !config.measure });
   return (
-    <div ref={ref} className={`line ${styles.toolbar}`}>
+    <div className={`line ${styles.toolbar}`}>
       <div className={`line ${styles.signals}`}>{children}</div>
       <div className={`line ${styles.tools}`}>
         {isTriggered && (
@@ -43,19 +37,6 @@ export function ScopeToolbar(props: ScopeToolbarProps) {
             onRearm={onRearm}
           />
         )}
-        {!isNarrow && (
-          <button
-            type="button"
-            className={styles.toggle}
-            aria-label="Trigger"
-            aria-pressed={isTriggered}
-            title={isTriggered ? "Let the picture roll again" : "Hold the picture at an edge of a signal"}
-            onClick={hold}
-          >
-            <IconWaveSquare size={15} aria-hidden="true" />
-            <span>Trigger</span>
-          </button>
-        )}
         <NativeSelect
           aria-label="Time window"
           w={86}
@@ -63,29 +44,15 @@ export function ScopeToolbar(props: ScopeToolbarProps) {
           data={windowItems(TIME_WINDOWS_MS.scope, config.windowMs)}
           onChange={(event) => onChange({ ...config, windowMs: Number(event.currentTarget.value) })}
         />
-        {!isNarrow && (
-          <ActionIcon
-            size={26}
-            variant={config.measure ? "light" : "default"}
-            aria-label="Measure"
-            aria-pressed={config.measure ?? false}
-            title="Cursors A and B, and figures over the visible span"
-            onClick={measure}
-          >
-            <IconRuler2 size={15} />
-          </ActionIcon>
-        )}
         {exporter(
-          isNarrow && (
-            <>
-              <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
-                {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
-              </Menu.Item>
-              <Menu.Item leftSection={<IconRuler2 size={15} />} onClick={measure}>
-                {config.measure ? "Without cursors and figures" : "Measure: cursors A and B, and figures"}
-              </Menu.Item>
-            </>
-          ),
+          <>
+            <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
+              {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
+            </Menu.Item>
+            <Menu.Item leftSection={<IconRuler2 size={15} />} onClick={measure}>
+              {config.measure ? "Without cursors and figures" : "Measure: cursors A and B, and figures"}
+            </Menu.Item>
+          </>,
         )}
         <LiveButton past={past} onLive={onLive} />
       </div>
