@@ -51,6 +51,14 @@ class MeasuredPorts(BlockPorts):
 class ObservedPorts(MeasuredPorts, AppliedPorts):
     """The measured displacement and the voltage that caused it: an identifier or a bank knows no more of the device."""
 
+    missing: float = reads("plant.missing?", "1", "not zero where a record lacks the sample")
+
+
+@kernel
+def observed(x: ObservedPorts) -> float:
+    """Return the measured displacement, or no number where a record lacks the sample and the measurement is held."""
+    return math.nan if x.missing != 0.0 else x.measured
+
 
 class Moves(Record):
     """Displacement and velocity gained from one volt more than at the start, in the middle or at the end of a tick."""

@@ -22,7 +22,16 @@ from core.estimation import diagonal, triangle
 from core.kernel import flush_tiny, kernel
 from core.ports import output, tap
 from core.record import Choice, Record, Vector, vector
-from core.voltage import Gathered, Interval, ObservedPorts, gather, interval_of, shuttle_memory, weighed_voltages
+from core.voltage import (
+    Gathered,
+    Interval,
+    ObservedPorts,
+    gather,
+    interval_of,
+    observed,
+    shuttle_memory,
+    weighed_voltages,
+)
 
 REGRESSOR = Stage("Regressor", "applied measured", "h")
 SIZE = 4
@@ -72,7 +81,7 @@ def regress(p: ArxBank.Packed, s: ArxBank.State, x: ArxBank.Ports) -> float:
     Voltage and measurement pass the same filter 1/A(q), if there is one. A missing measurement is replaced by the last
     one.
     """
-    z = x.measured
+    z = observed(x)
     u, later = weighed_voltages(p.interval, s.gathered)
     s.power = flush_tiny(p.memory * s.power + (1.0 - p.memory) * u * u)
     a1 = p.filter_a1

@@ -64,7 +64,7 @@ class Cusum(KalmanBank):
         if between_updates(p, s, x, 0, whole(n)):
             return
         threshold = p.threshold
-        evidence = informed(p, s, x.measured)
+        evidence = informed(p, s, x)
         if filters_step(p, s, x, n):
             take_logarithms(s, n)
         healthy = 0.0

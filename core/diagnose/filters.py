@@ -9,7 +9,7 @@ from core.elementary import log
 from core.kernel import flush_tiny, kernel, whole
 from core.ports import output, tap
 from core.record import Vector
-from core.voltage import AppliedPorts, ObservedPorts
+from core.voltage import AppliedPorts, ObservedPorts, observed
 
 TAKE_MIDDLE, TAKE_START, TAKE_PARABOLA = 0, 1, 2
 """The voltages a filter may assume over a tick."""
@@ -114,9 +114,9 @@ def driven(p: PackedFilters, s: Filters) -> bool:
 
 
 @kernel
-def informed(p: PackedFilters, s: Filters, measured: float) -> bool:
+def informed(p: PackedFilters, s: Filters, x: ObservedPorts) -> bool:
     """Say whether this sample is evidence: it was measured, and the drive is large enough."""
-    return math.isfinite(measured) and driven(p, s)
+    return math.isfinite(observed(x)) and driven(p, s)
 
 
 @kernel
@@ -198,7 +198,7 @@ def filters_step(p: PackedFilters, s: Filters, x: StatePorts, n: int) -> bool:
 
     Returns whether a residual covariance has changed, so that its logarithm must be renewed.
     """
-    z = x.measured
+    z = observed(x)
     seen = math.isfinite(z)
     first = s.started == 0.0
     s.started = 1.0

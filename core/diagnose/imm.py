@@ -141,7 +141,7 @@ class Imm(KalmanBank):
         n = int(p.count)
         if between_updates(p, s, x, 0, whole(n)):
             return
-        evidence = informed(p, s, x.measured)
+        evidence = informed(p, s, x)
         if evidence and s.started != 0.0:
             mix(s, n, p.switching)
         filters_step(p, s, x, n)

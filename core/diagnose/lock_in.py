@@ -107,7 +107,7 @@ class LockIn(KalmanBank):
         n = int(p.count)
         if between_updates(p, s, x, 0, whole(n)):
             return
-        evidence = informed(p, s, x.measured)
+        evidence = informed(p, s, x)
         place = window.begin(p, s)
         turn = window.angle(p, x.tick)
         cosine = cos(turn)

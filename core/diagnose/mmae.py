@@ -147,7 +147,7 @@ class Mmae(KalmanBank):
         n = int(p.count)
         if between_updates(p, s, x, 0, whole(n)):
             return
-        evidence = informed(p, s, x.measured)
+        evidence = informed(p, s, x)
         if filters_step(p, s, x, n):
             take_logarithms(s, n)
         if p.linear == 0.0:

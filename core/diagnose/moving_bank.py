@@ -15,6 +15,7 @@ from core.diagnose.weights import floored, take_floored_softmax
 from core.elementary import log
 from core.ports import output, tap
 from core.record import Vector, tail, vector
+from core.voltage import observed
 
 THREE = ("lower", "centre", "upper")
 """The filters that run."""
@@ -157,7 +158,7 @@ class MovingBank(KalmanBank):
         centre = int(s.centre)
         if between_updates(p, s, x, centre - 1, centre + 2):
             return
-        z = x.measured
+        z = observed(x)
         first = s.started == 0.0
         s.started = 1.0
         seen = math.isfinite(z)

@@ -11,7 +11,7 @@ from core.diagnose.hypothesis import lacking
 from core.kernel import flush_tiny
 from core.ports import output
 from core.record import Record
-from core.voltage import ObservedPorts, Tick, moves, tick_of
+from core.voltage import ObservedPorts, Tick, moves, observed, tick_of
 
 REQUIRED, DEGRADED, UNACCEPTABLE, DANGER = 0.0, 1.0, 2.0, 3.0
 REGIONS = ("required performance", "degraded performance", "unacceptable performance", "danger")
@@ -98,7 +98,7 @@ class Regions(Block):
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
         """Advance the healthy device over a tick, compare over a period, decide the region."""
-        y = x.measured
+        y = observed(x)
         if s.started != 0.0:
             u, middle, end = moves(x)
             rest = p.static_gain * u

@@ -97,7 +97,7 @@ class Reseed(KalmanBank):
         n = int(p.count)
         if between_updates(p, s, x, 0, whole(n)):
             return
-        evidence = informed(p, s, x.measured)
+        evidence = informed(p, s, x)
         if filters_step(p, s, x, n):
             take_logarithms(s, n)
         best = judge(s, s.log, s.likelihood, n, evidence)

@@ -14,6 +14,7 @@ from core.elementary import log
 from core.kernel import kernel, whole
 from core.ports import reads, tap
 from core.record import Vector, vector
+from core.voltage import observed
 
 
 @kernel
@@ -126,7 +127,7 @@ class TwoOutput(KalmanBank):
         if between_updates(p, s, x, 0, whole(n)):
             return
         zv = x.velocity
-        seen = math.isfinite(x.measured)
+        seen = math.isfinite(observed(x))
         seen_too = math.isfinite(zv)
         drive = driven(p, s)
         if filters_step(p, s, x, n):

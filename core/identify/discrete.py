@@ -22,7 +22,7 @@ from core.identify.identifier import (
 from core.kernel import kernel
 from core.ports import tap
 from core.record import Vector, vector
-from core.voltage import Gathered, Interval, gather, interval_of, weighed_voltages
+from core.voltage import Gathered, Interval, gather, interval_of, observed, weighed_voltages
 
 N = 4
 COEFFICIENTS = ("b0", "b1", "a1", "a2")
@@ -150,7 +150,7 @@ def gather_voltage(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> 
 @kernel
 def observe(p: Discrete.Packed, s: Discrete.State, x: Discrete.Ports) -> tuple[bool, float]:
     """Form the regressor, and return whether there was a sample and its difference from the prediction."""
-    y = x.measured
+    y = observed(x)
     seen = math.isfinite(y)
     if not seen:
         y = s.last_y

@@ -33,7 +33,7 @@ from core.kernel import kernel
 from core.matrix import lyapunov
 from core.ports import tap
 from core.record import Vector, vector
-from core.voltage import Motion, moves
+from core.voltage import Motion, moves, observed
 
 N = 3
 COEFFICIENTS = ("gain", "a1", "a2")
@@ -173,7 +173,7 @@ def follow_voltage(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) ->
 @kernel
 def observe(p: Filtered.Packed, s: Filtered.State, x: IdentifierPorts) -> tuple[bool, float]:
     r"""Filter the displacement; return whether there was a sample, and the :math:`z` it gives (3.3.2.6-7)."""
-    y = x.measured
+    y = observed(x)
     seen = math.isfinite(y)
     if not seen:
         y = s.last_y

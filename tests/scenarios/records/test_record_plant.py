@@ -78,6 +78,24 @@ def test_lost_samples_are_held_and_never_invented(own: MeasuredRecord, folder: R
     assert (seen[100:103] == y[99]).all() and np.array_equal(seen[103:200], y[103:200])
 
 
+KINDS = ("mmae", "imm", "cusum", "lock_in", "reseed", "consistency")
+
+
+def test_banks_are_as_right_with_lost_samples_as_without(own: MeasuredRecord, folder: RecordFolder) -> None:
+    """A held sample is no measurement: banks predict there and weigh nothing."""
+    y = own.displacement.copy()
+    y[np.random.default_rng(5).random(len(y)) < 0.08] = np.nan
+    y[5000:5040] = np.nan
+    hypotheses = get("ch5-seven-step").document["diagnosers"]["kalman"]["hypotheses"]
+    banks = {kind: {"kind": kind, "hypotheses": hypotheses} for kind in KINDS}
+    lossy = MeasuredRecord(50.0, own.drive.copy(), y, own.label, own.hypotheses)
+    found, whole = (run(Scenario.load(bench(one, folder, diagnosers=banks))).metrics for one in (lossy, own))
+    for kind in KINDS:
+        name = f"diagnosis.{kind}.correct_fraction"
+        assert whole[name] > 0.8
+        assert found[name] == pytest.approx(whole[name], abs=0.02), kind
+
+
 def test_offset_and_delay_of_a_calibration_are_taken_out(own: MeasuredRecord, folder: RecordFolder) -> None:
     document = bench(own, folder, samples=50)
     document["plant"] = {**document["plant"], "offset_um": 0.25, "delay_samples": 2.5}
