@@ -19,6 +19,7 @@ IDENTIFIER = re.compile(r"[a-z][a-z0-9_]{0,31}")
 DRIVEN = ("drive.voltage", "drive.middle", "drive.end")
 REFERENCE = ("reference.voltage", "reference.middle", "reference.end")
 MEASURED = ("sensor.displacement",)
+OBSERVED = (*MEASURED, "plant.missing?")
 MOTION = tuple(
     f"sensor.{axis}.{name}{mark}"
     for axis, mark in (("x", ""), ("y", ""), ("partner_x", "?"), ("partner_y", "?"))
@@ -35,8 +36,8 @@ PUBLIC: dict[str, tuple[str, ...]] = {
     "control": (*REFERENCE, "model.displacement", "model.velocity", *MEASURED, *DRIVEN, "@engaged"),
     "control, axes": (*MOTION, *CARRIER, "@engaged"),
     "readout": ("@active.rate",),
-    "diagnose": (*MEASURED, *DRIVEN, *REFERENCE),
-    "identify": (*MEASURED, *DRIVEN, *REFERENCE),
+    "diagnose": (*OBSERVED, *DRIVEN, *REFERENCE),
+    "identify": (*OBSERVED, *DRIVEN, *REFERENCE),
     "supervise": (
         "{diagnoser}.winner",
         "{diagnoser}.unexplained",
