@@ -93,7 +93,10 @@ class Device(BlockParams):
     thickness_um: LengthUm | None = parameter(None, "structural thickness", "um", live=False)
     finger_gap_um: LengthUm | None = parameter(None, "gap between fingers as etched", "um", live=False)
     fringing: Fringing | None = parameter(
-        None, "field beyond the facing sides of fingers: over a grounded plane, or free of one", live=False
+        None,
+        "field beyond the facing sides of fingers: over a grounded plane, or free of one; without effect beside "
+        "force_n_per_v, which contains it",
+        live=False,
     )
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
@@ -127,8 +130,6 @@ class Device(BlockParams):
             raise ValueError("needs force_n_per_v, or fingers with thickness_um and finger_gap_um, or a geometry")
         if self.force_n_per_v is not None and self.bias_v == 0.0:
             raise ValueError("force_n_per_v is the force at the bias, so bias_v must not be 0")
-        if self.force_n_per_v is not None and self.fringing is not None:
-            raise ValueError("force_n_per_v holds the fringing already; leave out fringing or force_n_per_v")
         try:
             Resonator.model_validate(self.resolved)
         except ValidationError as error:
@@ -206,14 +207,14 @@ class Device(BlockParams):
 
     @property
     def fringing_factor(self) -> float:
-        """dC/dx over dC/dx of plates.
+        """dC/dx over dC/dx of plates; 1 beside a given force, which contains the fringing.
 
         Raises
         ------
         InputError
             For a comb outside the checked proportions.
         """
-        if self.fringing is None:
+        if self.fringing is None or self.force_n_per_v is not None:
             return 1.0
         drawn = self.drawing
         return fringing_factor(self.fringing, drawn.finger_um, drawn.gap_um, drawn.thickness_um, drawn.film_gap_um)
@@ -280,7 +281,7 @@ class Device(BlockParams):
                 quoted |= self.drawn_gyroscope.metrics(self.geometry, stiffness_scale, scale)
             return quoted
         quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
-        if self.fringing is not None:
+        if self.fringing is not None and self.force_n_per_v is None:
             quoted["fringing_factor"] = self.fringing_factor
         if self.printed is not None:
             quoted |= self.printed.metrics()

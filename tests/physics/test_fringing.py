@@ -8,6 +8,7 @@ from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from core.device.catalogue import device
+from core.device.drawn import device_of
 from core.device.fringing import Fringing, fringing_factor
 from core.errors import InputError
 
@@ -89,10 +90,27 @@ def test_a_device_with_fringing_has_more_force_and_the_others_have_theirs() -> N
     assert above.metrics()["static_gain_um_per_v"] == pytest.approx(factor * plain.metrics()["static_gain_um_per_v"])
 
 
+def test_a_given_force_contains_the_fringing_whatever_the_comb() -> None:
+    given = {"id": "lcr-350", "force_n_per_v": 1e-8}
+    alone, beside = device(given), device({**given, "fringing": "free", "geometry": {"thickness_um": 50.0}})
+    assert beside.capacitance_gradient == alone.capacitance_gradient == 1e-8 / (2.0 * alone.bias_v)
+    assert "fringing_factor" not in beside.metrics()
+
+
+def test_a_device_of_a_class_keeps_the_force_of_its_fringing() -> None:
+    plain, above = device({"id": "lcr-350"}), device({"id": "lcr-350", "fringing": "grounded_plane"})
+    without, drawn = device_of(plain, 5), device_of(above, 5)
+    values = {path.removeprefix("device."): value for path, value in drawn.items()}
+    made = device({"id": "lcr-350", "fringing": "grounded_plane", **values})
+    assert abs(made.signed_force_n_per_v) == pytest.approx(drawn["device.force_n_per_v"], rel=1e-15)
+    ratio = drawn["device.force_n_per_v"] / without["device.force_n_per_v"]
+    assert ratio == pytest.approx(above.fringing_factor, rel=1e-12)
+    assert {**drawn, "device.force_n_per_v": 0} == {**without, "device.force_n_per_v": 0}
+
+
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"id": "ch3", "force_n_per_v": 1e-8, "fringing": "free"}, ["force_n_per_v", "fringing"]),
         ({"id": "lcr-350", "fringing": "some"}, ["fringing", "grounded_plane", "free"]),
         (
             {"id": "lcr-350", "fringing": "free", "geometry": {"thickness_um": 50.0}},
