@@ -8,6 +8,7 @@ from typing import Any, Self
 from pydantic import ValidationError, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
+from core.device import levitation
 from core.device.drawn_gyroscope import DrawnGyroscope
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
@@ -283,6 +284,10 @@ class Device(BlockParams):
         quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
         if self.fringing is not None and self.force_n_per_v is None:
             quoted["fringing_factor"] = self.fringing_factor
+            if self.fringing == "grounded_plane":
+                drawn = self.drawing
+                beams = None if self.geometry is None else stiffness
+                quoted |= levitation.figures(drawn, self.fingers or drawn.fingers, self.stators_v, beams)
         if self.printed is not None:
             quoted |= self.printed.metrics()
         return quoted

@@ -92,6 +92,36 @@ QUANTITIES = (
             "turns at a bias without any travel",
         ),
     ),
+    DeviceFigure(
+        "fringing_factor",
+        "Fringing",
+        "1",
+        Equation(
+            "field of the cross-section, over plates",
+            r"\frac{dC}{dx}\bigg/\frac{2n\varepsilon_0t}g,\quad\frac{dC}{dx}=n\left(C'_{engaged}-C'_{stator}\right)",
+            "1.5",
+        ),
+    ),
+    DeviceFigure(
+        "levitation_nn_per_v2",
+        "Levitation",
+        "nN/V^2",
+        Equation(
+            "upwards, of one comb; the plant is planar and does not rise",
+            r"\frac{F_z}{V^2}=\tfrac12nL_0\frac{dC'}{dz}",
+            "Tang, Lim and Howe 1992",
+        ),
+    ),
+    DeviceFigure(
+        "lift_nm",
+        "Lift at the bias",
+        "nm",
+        Equation(
+            "balance; the plant is planar and does not rise",
+            r"k_zz=(V_1^2+V_2^2)\,\frac{F_z(z)}{V^2},\quad k_z=k_x\left(\frac tw\right)^2",
+            "Tang, Lim and Howe 1992",
+        ),
+    ),
     *(
         DeviceFigure(
             f"gyro.mode_hz.{n}",
