@@ -8,8 +8,9 @@ from typing import Any, Self
 from pydantic import ValidationError, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
-from core.device import levitation
+from core.device import electrodes, levitation
 from core.device.drawn_gyroscope import DrawnGyroscope
+from core.device.electrodes import Electrodes
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
 from core.device.fringing import Fringing, fringing_factor
@@ -17,6 +18,7 @@ from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
 from core.device.ranges import BiasV, DampingNsM, Fingers, ForceNPerV, LengthUm, MassKg, Resonator, StiffnessNM
 from core.device.transfer_function import TransferFunction
+from core.device.two_axis import TwoAxis
 from core.errors import InputError, from_validation
 from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
 
@@ -70,8 +72,8 @@ class Device(BlockParams):
 
     Either mass, damping and stiffness are given, or ``geometry``; a value given in addition to a geometry wins. A
     ``transfer_function`` describes a plant that is no resonator, and has none of these. A gyroscope moves along two
-    axes and is driven by forces: all its numbers are in the table ``gyroscope``, or follow from ``geometry`` and
-    ``drawn_gyroscope``.
+    axes and is driven by forces, or by volts on its ``electrodes``: all its other numbers are in the table
+    ``gyroscope``, or follow from ``geometry`` and ``drawn_gyroscope``.
     """
 
     id: str = parameter("custom", "name in the catalogue", live=False)
@@ -104,6 +106,7 @@ class Device(BlockParams):
     drawn_gyroscope: DrawnGyroscope | None = parameter(
         None, "data of a device with two axes in addition to the drawing", live=False
     )
+    electrodes: Electrodes | None = parameter(None, "electrodes of a device with two axes", live=False)
     printed: PrintedFigures | None = parameter(None, "printed figures of the dissertation", live=False)
 
     @model_validator(mode="after")
@@ -117,6 +120,8 @@ class Device(BlockParams):
             if self.drawn_gyroscope is not None and self.geometry is None:
                 raise ValueError("drawn_gyroscope needs a geometry, the drawing of its parts")
             self.oscillator()
+        elif self.electrodes is not None:
+            raise ValueError("electrodes belong to a gyroscope; a resonator has its comb, fingers and gap")
         if self.usual_plant != "linear":
             return self
         missing = [
@@ -222,7 +227,7 @@ class Device(BlockParams):
 
     @property
     def capacitance_gradient(self) -> float:
-        """dC/dx of one comb, F/m; a transfer function has no comb, and a gyroscope is driven by forces."""
+        """dC/dx of one comb, F/m; a transfer function has no comb, and the combs of a gyroscope are its electrodes."""
         if self.usual_plant != "linear":
             return 0.0
         if self.force_n_per_v is not None:
@@ -237,12 +242,18 @@ class Device(BlockParams):
         first, second = self.stators_v
         return -self.capacitance_gradient * (first - second)
 
+    def _with_electrodes(self, device: TwoAxis) -> TwoAxis:
+        own = self.electrodes or Electrodes()
+        if self.drawn_gyroscope is None or self.geometry is None:
+            return own.on(device, None, None)
+        return own.on(device, self.geometry, self.drawn_gyroscope.sense(self.geometry))
+
     def oscillator(self) -> Oscillator:
         """Return the device in the units of the loop."""
         if self.transfer_function is not None:
             return self.transfer_function.oscillator()
         if (axes := self.two_axes) is not None:
-            return axes.two_axis()
+            return self._with_electrodes(axes.two_axis())
         si = self.resolved
         return Oscillator(
             mass=mass_mg(si["mass_kg"]),
@@ -280,7 +291,8 @@ class Device(BlockParams):
             if self.drawn_gyroscope is not None and self.geometry is not None:
                 scale = quoted["gyro.scale_pm_per_dps"]
                 quoted |= self.drawn_gyroscope.metrics(self.geometry, stiffness_scale, scale)
-            return quoted
+            scaled = axes.two_axis().scaled(stiffness_scale, damping_scale)
+            return quoted | electrodes.figures(self._with_electrodes(scaled))
         quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
         if self.fringing is not None and self.force_n_per_v is None:
             quoted["fringing_factor"] = self.fringing_factor

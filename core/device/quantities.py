@@ -234,6 +234,36 @@ QUANTITIES = (
         for axis in ("x", "y")
     ),
     DeviceFigure(
+        "gyro.softening_n_m_per_v2",
+        "Softening along y",
+        "N/m/V^2",
+        Equation(
+            "parallel plates",
+            r"-\frac{k_e}{V^2}=\frac1{2}\frac{d^2C}{dy^2}=\frac{2\varepsilon_0A}{g^3}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.matching_v",
+        "Tuning at matched modes",
+        "V",
+        Equation(
+            "y rings with x",
+            r"V_m=\sqrt{\frac{(k_{yy}-m_yk_{xx}/m_x)\,g^3}{2\varepsilon_0A}}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.pull_in_v",
+        "Pull-in of the tuning electrode",
+        "V",
+        Equation(
+            "nothing is left of the spring along y",
+            r"V_{pi}=\sqrt{\frac{(k_{yy}-k_{xy}^2/k_{xx})\,g^3}{2\varepsilon_0A}}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
         "gyro.sense_ff_per_um",
         "Capacitance along y",
         "fF/um",
