@@ -62,7 +62,7 @@ class ModeMatching(Block):
         Stage("Voltage", "split", "tuning", ("tuning",)),
     )
     weaknesses = (
-        "The pilots must be heard: a read-out that holds y at zero with a bandwidth near theirs takes their answer away.",
+        "A read-out that holds y at zero with a bandwidth near the pilot frequency takes the answers away.",
         "They are a ripple of the rate at the pilot frequency, which the low-pass of the read-out must remove.",
         "Beyond a split as large as the pilot frequency the measured split is too small, though of the right sign.",
     )

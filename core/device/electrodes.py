@@ -11,7 +11,7 @@ from core.block import BlockParams, parameter
 from core.device.geometry import Geometry
 from core.device.ranges import BiasV, Fingers, LengthUm
 from core.device.two_axis import PushPull, TuningPlates, TwoAxis
-from core.units import EPSILON_0
+from core.units import EPSILON_0, PM_PER_UM, rate_deg_s
 
 SIDES = 2.0
 """Each rotor finger has a gap on both sides; plates face both sides of the mass."""
@@ -113,6 +113,11 @@ def figures(device: TwoAxis) -> dict[str, float]:
         for axis, comb in (("x", device.comb_x), ("y", device.comb_y))
         if comb is not None
     }
+    if device.comb_x is not None and device.comb_y is not None:
+        per_pm = 1.0 / (device.comb_x.per_volt * device.comb_y.per_volt)  # pm/uN of 1 aF
+        spring = device.sense(device.drive_frequency).real
+        passed = rate_deg_s(per_pm * device.damping * abs(spring) / (4.0 * device.coriolis_mass)) / PM_PER_UM
+        found |= {"gyro.feed_through_pm_un_af": per_pm, "gyro.feed_through_dps_af": passed}
     if (plates := device.tuning) is not None:
         found["gyro.softening_n_m_per_v2"] = plates.per_v2
         found["gyro.pull_in_v"] = plates.pull_in_v(device.free_stiffness_y)

@@ -234,6 +234,26 @@ QUANTITIES = (
         for axis in ("x", "y")
     ),
     DeviceFigure(
+        "gyro.feed_through_pm_un_af",
+        "Feed-through per parasitic capacitance",
+        "pm/uN/aF",
+        Equation(
+            "charge over charge",
+            r"\frac s{C_p}=\frac1{\kappa_x\kappa_y},\quad\kappa=2\frac{dC}{dx}V_b",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.feed_through_dps_af",
+        "The same as a rate",
+        "deg/s/aF",
+        Equation(
+            "open loop, x at resonance",
+            r"\frac{|\Omega_p|}{C_p}=\frac{d_{xx}\,|k_{yy}-m_y\omega_1^2|}{4m_c\kappa_x\kappa_y}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
         "gyro.softening_n_m_per_v2",
         "Softening along y",
         "N/m/V^2",

@@ -11,7 +11,7 @@ from core.kernel import kernel
 from core.plant.gyroscope import EQUATIONS
 from core.plant.two_axis_body import TwoAxisMotion
 from core.plant.two_axis_plant import TwoAxisPlant, TwoAxisPorts, go, start, take_now
-from core.ports import reads, tap
+from core.ports import output, reads, tap
 from core.record import Record
 from core.units import MS_PER_S
 
@@ -55,7 +55,7 @@ class TunedGyroscope(TwoAxisPlant):
 
         tuning: float = reads("@tuning.tuning", "V", "voltage on the tuning electrode")
         pilot: float = reads("@tuning.pilot", "uN", "force along y besides the drive's")
-        split: float = tap("Hz", "frequency of y alone less that of x alone; minus where y is the lower")
+        split: float = output("Hz", "frequency of y alone less that of x alone; minus where y is the lower")
         pulled_in: float = tap("1", "1 where the plates win over the spring")
 
     @classmethod

@@ -12,7 +12,7 @@ from scipy.signal import welch
 from core.device.catalogue import device
 from core.device.two_axis import TwoAxis
 from core.errors import InputError
-from scenarios.run import Result, run
+from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 from tests.two_axis import held
 
@@ -33,7 +33,7 @@ TUNED: dict[str, Any] = {
 }
 
 
-def ran(duration_ms: float, changes: dict[str, Any] | None = None) -> Result:
+def ran(duration_ms: float, changes: dict[str, Any] | None = None) -> RunResult:
     document = copy.deepcopy(TUNED) | {"duration_ms": duration_ms}
     for path, value in (changes or {}).items():
         table = document
@@ -126,11 +126,11 @@ def test_mode_matching_follows_a_spring_that_changes_and_keeps_the_scale() -> No
         "device.gyroscope": {"stiffness_xy_n_m": 0.0},
     }
     result = ran(2200.0, changes)
-    before, after = round(999 * 20), -1
+    before, after = 999 * 20, -1
     for at in (before, after):
         assert abs(result.signal("plant.split")[at]) < 0.2
         assert result.signal("open_loop_rate.rate")[at] == pytest.approx(20.0, rel=0.01)
-    assert result.signal("plant.split")[round(1050 * 20)] > 5.0
+    assert result.signal("plant.split")[1050 * 20] > 5.0
 
 
 def test_a_desired_split_is_held() -> None:
@@ -187,7 +187,7 @@ def test_the_rate_noise_at_a_split_is_that_of_pick_off_and_damping(split: float)
 
 
 def test_pull_in_is_refused_or_stops_the_board() -> None:
-    with pytest.raises(InputError, match="56.01 V pulls the mass into the tuning electrode; its pull-in is at 56 V"):
+    with pytest.raises(InputError, match=r"56.01 V pulls the mass into the tuning electrode; its pull-in is at 56 V"):
         ran(1.0, {"controllers.tuning_voltage.voltage_v": 56.01})
     event = {"at_ms": 5.0, "fault": "sense_stiffness", "severity": -0.1}
     result = ran(20.0, {"controllers.tuning_voltage.voltage_v": 54.0, "events": [event]})
