@@ -77,6 +77,19 @@ def test_the_converter_and_the_limit_are_in_volts() -> None:
     assert result.signal("drive.x.saturated").max() == 1.0
 
 
+def test_a_parasitic_capacitance_is_a_charge_against_the_charge_of_a_displacement() -> None:
+    """C_p v_x against 2 dC/dy V_b y: pm/uN of 1 aF, and the rate that an open loop takes it for."""
+    found = device({"id": "gyro-c", "electrodes": {"drive": COMB, "sense": COMB}}).metrics()
+    slope = 2.0 * COMB["fingers"] * EPSILON_0 * COMB["thickness_um"] / COMB["gap_um"]  # F/m
+    per_volt = 2.0 * slope * COMB["bias_v"]  # N/V, and C/m
+    passed = 1e-18 * (1e-6 / per_volt) / per_volt  # m of 1 aF and 1 uN
+    assert found["gyro.feed_through_pm_un_af"] == pytest.approx(1e12 * passed, rel=1e-9)
+    omega = 2.0 * np.pi * found["gyro.mode_hz.1"]
+    spring = 987.2898 - 1.58e-6 * omega**2
+    rate = np.degrees(passed * 1e6 * 7.4945e-6 * spring / (4.0 * 1.58e-6))
+    assert found["gyro.feed_through_dps_af"] == pytest.approx(rate, rel=1e-3)
+
+
 def test_a_drawn_device_has_the_combs_of_its_drawing() -> None:
     drawn = device({"id": "gyro-lcr-350"})
     gradient = 2.0 * 87 * EPSILON_0 * 2.0 / 2.1

@@ -96,20 +96,21 @@ def test_pilot_tones_measure_the_split_of_the_closed_form(volts: float) -> None:
     changes = {
         "slots.tuning": "mode_matching",
         "controllers.mode_matching": {"start_v": volts, "settle_ms": 250.0},
+        "sample_rate_khz": 100,
+        "device.gyroscope": {"stiffness_xy_n_m": 0.0},  # the carrier has the frequency of x alone
         "rate.deg_per_s": 50.0,
     }
     result = ran(360.0, changes)
     assert result.signal("mode_matching.split")[-1] == pytest.approx(split_hz(volts), rel=0.01)
 
 
-@pytest.mark.parametrize("late", [0, 3])
+@pytest.mark.parametrize("late", [0, 1])
 def test_mode_matching_removes_the_split_whatever_the_delay(late: int) -> None:
     changes = {
         "slots.tuning": "mode_matching",
         "board.delay_samples": late,
+        "sample_rate_khz": 50,  # a sample is 28 degrees
         "rate.deg_per_s": 20.0,
-        "controllers.drive_loop.amplitude_bandwidth_hz": 10.0,
-        "controllers.drive_loop.phase_bandwidth_hz": 20.0,
         "controllers.mode_matching": {"settle_ms": 130.0},
     }
     result = ran(1300.0, changes)
@@ -118,19 +119,19 @@ def test_mode_matching_removes_the_split_whatever_the_delay(late: int) -> None:
 
 
 def test_mode_matching_follows_a_spring_that_changes_and_keeps_the_scale() -> None:
-    fault = {"at_ms": 1000.0, "fault": "sense_stiffness", "severity": 0.003}
+    fault = {"at_ms": 1260.0, "fault": "sense_stiffness", "severity": 0.003}
     changes = {
         "slots.tuning": "mode_matching",
         "rate.deg_per_s": 20.0,
         "events": [fault],
         "device.gyroscope": {"stiffness_xy_n_m": 0.0},
     }
-    result = ran(2200.0, changes)
-    before, after = 999 * 20, -1
+    result = ran(2490.0, changes)
+    before, after = 1240 * 20, -1
     for at in (before, after):
-        assert abs(result.signal("plant.split")[at]) < 0.2
+        assert abs(result.signal("plant.split")[at]) < 0.01 * split_hz(0.0)
         assert result.signal("open_loop_rate.rate")[at] == pytest.approx(20.0, rel=0.01)
-    assert result.signal("plant.split")[1050 * 20] > 5.0
+    assert result.signal("plant.split")[1270 * 20] > 5.0
 
 
 def test_a_desired_split_is_held() -> None:
@@ -174,7 +175,7 @@ def test_the_rate_noise_at_a_split_is_that_of_pick_off_and_damping(split: float)
         "sample_rate_khz": 15,
         "device.gyroscope": {"stiffness_xy_n_m": 0.0},
     }
-    read = ran(25_000.0, changes).signal("open_loop_rate.rate")[15_000:]
+    read = ran(17_000.0, changes).signal("open_loop_rate.rate")[15_000:]
     hz, density = welch(read, fs=15_000.0, nperseg=30_000)
     used = (hz >= 1.0) & (hz <= 20.0)
     per_force = np.degrees(1e3 / (2.0 * MASS_Y * OMEGA * 5.0))
@@ -183,7 +184,7 @@ def test_the_rate_noise_at_a_split_is_that_of_pick_off_and_damping(split: float)
     sides = [np.abs(at / stiffness_of_y(OMEGA + side * 2e-3 * np.pi * hz, volts)) ** 2 for side in (1.0, -1.0)]
     thermal = (per_force * 1e6) ** 2 * 4.0 * BOLTZMANN * 300.0 * D_Y * 1e-3 * (sides[0] + sides[1])
     expected = (pick_off + thermal) * np.abs(low_pass(hz, 20.0)) ** 2
-    assert np.sqrt((density[used] / expected[used]).mean()) == pytest.approx(1.0, abs=0.08)
+    assert np.sqrt((density[used] / expected[used]).mean()) == pytest.approx(1.0, abs=0.1)
 
 
 def test_pull_in_is_refused_or_stops_the_board() -> None:
@@ -203,8 +204,8 @@ def test_a_swing_beyond_the_unstable_point_is_a_pull_in() -> None:
     pull = softening(volts) * GAP**3 * GAP * y / (GAP**2 - y**2) ** 2
     assert pull == pytest.approx((K_Y - K_XY**2 / K_X) * y, rel=1e-9)
     for start, stops in ((0.99 * y, False), (1.01 * y, True)):
-        changes = {"controllers.tuning_voltage.voltage_v": volts, "plant.initial_y_um": start}
-        assert (ran(0.1, changes).trip is not None) == stops
+        changes = {"controllers.tuning_voltage.voltage_v": volts, "plant.initial_y_um": float(start)}
+        assert (ran(0.003, changes | {"sample_rate_khz": 1000}).trip is not None) == stops
 
 
 @pytest.mark.parametrize(
