@@ -90,16 +90,22 @@ class Electrodes(BlockParams):
         ValueError
             If a number of a comb is neither given nor drawn.
         """
-        combs = {}
-        for name, axis, comb, drawn in (("drive", "x", self.drive, drawn_x), ("sense", "y", self.sense, drawn_y)):
-            if comb is None and drawn is not None:
-                comb = Comb()
-            try:
-                combs[f"comb_{axis}"] = None if comb is None else comb.push_pull(drawn)
-            except ValueError as error:
-                raise ValueError(f"electrodes.{name} {error}") from None
-        tuning = None if self.tuning is None else self.tuning.tuning_plates()
-        return replace(device, **combs, tuning=tuning)
+        return replace(
+            device,
+            comb_x=_combs("drive", self.drive, drawn_x),
+            comb_y=_combs("sense", self.sense, drawn_y),
+            tuning=None if self.tuning is None else self.tuning.tuning_plates(),
+        )
+
+
+def _combs(name: str, comb: Comb | None, drawn: Geometry | None) -> PushPull | None:
+    """Return the combs of an electrode; a drawing has combs even where no others are given."""
+    if comb is None and drawn is None:
+        return None
+    try:
+        return (comb or Comb()).push_pull(drawn)
+    except ValueError as error:
+        raise ValueError(f"electrodes.{name} {error}") from None
 
 
 def figures(device: TwoAxis) -> dict[str, float]:
