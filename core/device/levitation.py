@@ -81,7 +81,7 @@ def lift_um(
 def figures(
     drawing: Geometry, fingers: int, stators_v: tuple[float, float], stiffness_n_m: float | None
 ) -> dict[str, float]:
-    """Return the vertical force per squared volt, and the lift of a shuttle at rest if its beams are drawn.
+    """Return the vertical force per squared volt, and the lift at the bias if the beams are drawn.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class PackedDrive(Converter):
 
 @kernel
 def pull(p: PackedDrive, volts: float) -> float:
-    """Return the force of two combs, of which one has the voltage in addition to the bias, the other less."""
+    """Return the force of two combs, at the bias plus the voltage and at the bias minus the voltage."""
     more, less = p.bias_v + volts, p.bias_v - volts
     return 0.5 * p.gradient * (more * more - less * less)
 
