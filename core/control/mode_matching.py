@@ -156,6 +156,9 @@ class ModeMatching(Block):
     @staticmethod
     def step(p: Packed, s: State, x: Ports) -> None:
         """Sound the pilots, gather their answers, and step the voltage at the end of a cycle."""
+        if x.tick == 0.0:
+            x.split = 0.0
+            x.ratio = 0.0
         if x.engaged == 0.0:
             s.square = x.applied * x.applied
             s.known = p.per_v2 * s.square
