@@ -90,9 +90,10 @@ def suited(spec: Spec) -> Spec:
     }
     if spec.is_analogue:
         _refuse_held(spec)
-    drive = spec.drive.params
-    if isinstance(drive, AxisDrive.Params) and (reason := AxisDrive.unable(drive, nominal, spec.axes)):
-        raise InputError(reason, "drive.by", "give the device electrodes, or drive it by force")
+    if isinstance(drive := spec.drive.params, AxisDrive.Params):
+        name, reason = AxisDrive.unable(drive, nominal, spec.axes)
+        if reason:
+            raise InputError(reason, f"drive.{name}", "by volts needs device.electrodes; by force needs none")
     for key in CHOSEN:
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     fields |= {f"{key}.kind": section.block for key, section in spec.supervisors.items()}

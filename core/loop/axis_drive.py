@@ -12,6 +12,10 @@ from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
 
+USUAL_V = 20.0
+"""Limit of the voltage on combs unless it is given."""
+
+
 class PackedDrive(Converter):
     """The converter, whether it passes on how the force moves between samples, and the combs of an axis.
 
@@ -64,7 +68,7 @@ class AxisDrive(Block):
         by: Literal["force", "volts"] = parameter(
             "force", "force as such, or volts on the combs of the device; the converter then has limit_v", live=False
         )
-        limit_v: float = parameter(20.0, "limit to either side, by volts", "V", gt=0, le=1e4)
+        limit_v: float | None = parameter(None, "limit to either side, by volts; 20 V unless given", "V", gt=0, le=1e4)
         kind: Literal["held", "analogue"] = parameter(
             "held",
             "held by a converter, or analogue, for controllers that know their force between samples",
@@ -90,13 +94,13 @@ class AxisDrive(Block):
     def quantum(cls, params: Any) -> float:
         """Return the step of the converter, 0 for none; by volts it is in volts."""
         if params.by == "volts":
-            return step_of(0.0, params.bits, params.limit_v)
+            return step_of(0.0, params.bits, params.limit_v or USUAL_V)
         return step_of(params.quantum_un, params.bits, params.limit_un)
 
     @classmethod
     def reach(cls, params: Any) -> float:
         """Return the largest force that is put out; by volts the largest voltage."""
-        return reach(params.limit_v if params.by == "volts" else params.limit_un, cls.quantum(params))
+        return reach((params.limit_v or USUAL_V) if params.by == "volts" else params.limit_un, cls.quantum(params))
 
     @classmethod
     def reach_un(cls, params: Any, device: Oscillator) -> float:
@@ -107,14 +111,16 @@ class AxisDrive(Block):
         return cls.reach(params) * min(found, default=0.0)
 
     @classmethod
-    def unable(cls, params: Any, device: Oscillator, axes: tuple[str, ...]) -> str:
-        """Say why this device cannot be driven so; nothing when it can."""
+    def unable(cls, params: Any, device: Oscillator, axes: tuple[str, ...]) -> tuple[str, str]:
+        """Return the field that does not go with this drive or device, and why; nothing where all do."""
         if params.by == "force":
-            return ""
+            return ("limit_v", "limits the volts on combs; this drive is by force") if params.limit_v else ("", "")
         without = [axis for axis in axes if combs(device, axis) is None]
         if without:
-            return f"this device has no combs along {', '.join(without)} for volts"
-        return "quantum_un is the step of a force; by volts the converter has bits" if params.quantum_un else ""
+            return "by", f"this device has no combs along {', '.join(without)} for volts"
+        return (
+            ("quantum_un", "is the step of a force; by volts the converter has bits") if params.quantum_un else ("", "")
+        )
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
