@@ -16,7 +16,7 @@ def counterpart(scenario: Scenario, kind: str = "open_loop") -> Scenario | None:
 
     The same faults come at the same moments; switches lead to the other controller, and events that set parameters of
     the controller in use are left out. The drive loop of a gyroscope stays, because without it there is no oscillation;
-    its sense axis is read in the open loop.
+    its sense axis is read in the open loop, and a slot between them has its usual controller.
 
     Returns
     -------
@@ -32,7 +32,9 @@ def replaced(scenario: Scenario, kind: str) -> Document:
     """Return the fields that the counterpart writes over its scenario; empty without a controller."""
     switches = [command.switch for event in scenario.events for command in event if isinstance(command, Switch)]
     drive = {scenario.spec.active, *(twin.active for twin in scenario.twins.values()), *switches}
-    if scenario.study is not None or drive <= {*OPEN, kind}:
+    usual = scenario.spec.plant.block.slots
+    between = [(slot, name) for slot, name in list(scenario.spec.driving.items())[1:-1] if name != usual[slot]]
+    if scenario.study is not None or (drive <= {*OPEN, kind} and not between):
         return {}
     other = scenario.head.comparator if kind == "pid" else None
     if kind == "pid" and (other is None or scenario.spec.axes):
@@ -40,6 +42,7 @@ def replaced(scenario: Scenario, kind: str) -> Document:
     if scenario.spec.axes:
         kind = OPEN[1]
     values: Document = {"controller.kind": kind} if other is None else {"controller": other.controller}
+    values |= {f"slots.{slot}": usual[slot] for slot, _ in between}
     for name, own in scenario.document.get("twins", {}).items():
         if "controller" in own:
             values[f"twins.{name}.controller"] = {"kind": kind} if other is None else other.controller

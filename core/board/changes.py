@@ -19,7 +19,7 @@ from core.board.wiring import Wiring, command_of, engage, wire
 from core.errors import InputError, from_validation, unknown
 from core.faults.fault import FaultParams
 from core.format import format_short
-from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, REASONS
+from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, PULLED_IN, REASONS
 
 
 class ChangeableBoard(Protocol):
@@ -171,7 +171,7 @@ def cause(board: ChangeableBoard) -> tuple[str, str]:
     text, signal = REASONS[code]
     moved = (f"plant.{axis}", f"plant.{axis}_velocity") if axis else ("plant.displacement", "plant.velocity")
     if axis:
-        signal = moved[0] if code == BEYOND_TRAVEL else f"drive.{axis}.force"
+        signal = {BEYOND_TRAVEL: moved[0], PULLED_IN: signal}.get(code, f"drive.{axis}.force")
     if code == NOT_FINITE:
         command = command_of(board.spec, axis) if axis else f"{board.spec.active}.voltage"
         signal = next((name for name in moved if not np.isfinite(board.value(name))), command)

@@ -11,6 +11,7 @@ from core.board.library import library_of
 from core.board.spec import Section, Spec
 from core.device.transfer_function import slowest_pole
 from core.errors import InputError, unknown
+from core.loop.axis_drive import AxisDrive
 from core.loop.model import Model
 from core.registry import blocks
 
@@ -89,6 +90,10 @@ def suited(spec: Spec) -> Spec:
     }
     if spec.is_analogue:
         _refuse_held(spec)
+    if isinstance(drive := spec.drive.params, AxisDrive.Params):
+        name, reason = AxisDrive.unable(drive, nominal, spec.axes)
+        if reason:
+            raise InputError(reason, f"drive.{name}", "by volts needs device.electrodes; by force needs none")
     for key in CHOSEN:
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     fields |= {f"{key}.kind": section.block for key, section in spec.supervisors.items()}

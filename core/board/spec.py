@@ -232,7 +232,7 @@ class Spec:
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
             limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=AxisDrive.reach(drive) if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_un=AxisDrive.reach_un(drive, nominal) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
             banks=self.banks,

@@ -52,8 +52,9 @@ def read(p: ReadOut, s: FilteredComponents, x: ReadPorts) -> None:
     s.in_step += (1.0 - p.kept) * (s.first_in_step - s.in_step)
     s.with_velocity += (1.0 - p.kept) * (s.first_with_velocity - s.with_velocity)
     # the force that causes this swing of the nominal sense axis, over the amplitude of x
-    force_cosine = p.sense.spring * s.with_velocity
-    force_sine = p.sense.spring * s.in_step
+    spring = p.sense.spring - x.softening
+    force_cosine = spring * s.with_velocity
+    force_sine = spring * s.in_step
     if p.corrected != 0.0:
         force_cosine += p.sense.damper * s.in_step
         force_sine -= p.sense.damper * s.with_velocity

@@ -57,7 +57,17 @@ class RatePorts(TwoAxisMeasuredPorts):
     cosine: float = reads("@drive.cosine", "1", "carrier in step with the velocity along x")
     amplitude: float = reads("@drive.amplitude", "um", "amplitude of x")
     frequency: float = reads("@drive.frequency", "Hz", "frequency of the carrier")
+    softening: float = reads("@tuning.softening", "uN/um", "stiffness along y that a tuning electrode takes away")
     rate: float = output("deg/s", "angular rate this controller reads")
+
+
+class TuningPorts(BlockPorts):
+    """Ports of every controller of the tuning slot: the voltage on the plates, and what read-outs should know of it."""
+
+    engaged: float = reads("@engaged", "1", "1 while this controller drives in its slot")
+    tuning: float = output("V", "voltage on the tuning electrode")
+    softening: float = output("uN/um", "stiffness along y that it takes away, as far as this controller knows")
+    pilot: float = output("uN", "force along y besides the drive's, to measure the split by", hidden=True)
 
 
 class Sense(Record):

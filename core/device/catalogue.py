@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from core.block import BlockParams
 from core.device.device import Device, PrintedFigures
 from core.device.drawn_gyroscope import DrawnGyroscope
+from core.device.electrodes import Comb, Electrodes, TuningElectrode
 from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
 from core.device.transfer_function import TransferFunction
@@ -55,6 +56,10 @@ def device(overrides: dict[str, Any]) -> Device:
             "transfer_function": TransferFunction,
             "gyroscope": GyroscopeTable,
             "drawn_gyroscope": DrawnGyroscope,
+            "electrodes": Electrodes,
+            "electrodes.drive": Comb,
+            "electrodes.sense": Comb,
+            "electrodes.tuning": TuningElectrode,
             "printed": PrintedFigures,
         }
         fields = {name: list(table.model_fields) for name, table in tables.items()}

@@ -8,7 +8,9 @@ from typing import Any, Self
 from pydantic import ValidationError, model_validator
 
 from core.block import BlockParams, Oscillator, parameter
+from core.device import electrodes, levitation
 from core.device.drawn_gyroscope import DrawnGyroscope
+from core.device.electrodes import Electrodes
 from core.device.environment import ROOM_K
 from core.device.frequency import figures
 from core.device.fringing import Fringing, fringing_factor
@@ -16,6 +18,7 @@ from core.device.geometry import Geometry
 from core.device.gyroscope import GyroscopeTable
 from core.device.ranges import BiasV, DampingNsM, Fingers, ForceNPerV, LengthUm, MassKg, Resonator, StiffnessNM
 from core.device.transfer_function import TransferFunction
+from core.device.two_axis import TwoAxis
 from core.errors import InputError, from_validation
 from core.units import BOLTZMANN, EPSILON_0, damping_un_ms_um, force_un_per_v, mass_mg, stiffness_un_um
 
@@ -69,8 +72,8 @@ class Device(BlockParams):
 
     Either mass, damping and stiffness are given, or ``geometry``; a value given in addition to a geometry wins. A
     ``transfer_function`` describes a plant that is no resonator, and has none of these. A gyroscope moves along two
-    axes and is driven by forces: all its numbers are in the table ``gyroscope``, or follow from ``geometry`` and
-    ``drawn_gyroscope``.
+    axes and is driven by forces, or by volts on its ``electrodes``: all its other numbers are in the table
+    ``gyroscope``, or follow from ``geometry`` and ``drawn_gyroscope``.
     """
 
     id: str = parameter("custom", "name in the catalogue", live=False)
@@ -93,13 +96,17 @@ class Device(BlockParams):
     thickness_um: LengthUm | None = parameter(None, "structural thickness", "um", live=False)
     finger_gap_um: LengthUm | None = parameter(None, "gap between fingers as etched", "um", live=False)
     fringing: Fringing | None = parameter(
-        None, "field beyond the facing sides of fingers: over a grounded plane, or free of one", live=False
+        None,
+        "field beyond the facing sides of fingers: over a grounded plane, or free of one; without effect beside "
+        "force_n_per_v, which contains it",
+        live=False,
     )
     transfer_function: TransferFunction | None = parameter(None, "of a plant that is no resonator", live=False)
     gyroscope: GyroscopeTable | None = parameter(None, "of a device with two axes", live=False)
     drawn_gyroscope: DrawnGyroscope | None = parameter(
         None, "data of a device with two axes in addition to the drawing", live=False
     )
+    electrodes: Electrodes | None = parameter(None, "electrodes of a device with two axes", live=False)
     printed: PrintedFigures | None = parameter(None, "printed figures of the dissertation", live=False)
 
     @model_validator(mode="after")
@@ -113,6 +120,8 @@ class Device(BlockParams):
             if self.drawn_gyroscope is not None and self.geometry is None:
                 raise ValueError("drawn_gyroscope needs a geometry, the drawing of its parts")
             self.oscillator()
+        elif self.electrodes is not None:
+            raise ValueError("electrodes belong to a gyroscope; a resonator has its comb, fingers and gap")
         if self.usual_plant != "linear":
             return self
         missing = [
@@ -127,8 +136,6 @@ class Device(BlockParams):
             raise ValueError("needs force_n_per_v, or fingers with thickness_um and finger_gap_um, or a geometry")
         if self.force_n_per_v is not None and self.bias_v == 0.0:
             raise ValueError("force_n_per_v is the force at the bias, so bias_v must not be 0")
-        if self.force_n_per_v is not None and self.fringing is not None:
-            raise ValueError("force_n_per_v holds the fringing already; leave out fringing or force_n_per_v")
         try:
             Resonator.model_validate(self.resolved)
         except ValidationError as error:
@@ -206,21 +213,21 @@ class Device(BlockParams):
 
     @property
     def fringing_factor(self) -> float:
-        """dC/dx over dC/dx of plates.
+        """dC/dx over dC/dx of plates; 1 beside a given force, which contains the fringing.
 
         Raises
         ------
         InputError
             For a comb outside the checked proportions.
         """
-        if self.fringing is None:
+        if self.fringing is None or self.force_n_per_v is not None:
             return 1.0
         drawn = self.drawing
         return fringing_factor(self.fringing, drawn.finger_um, drawn.gap_um, drawn.thickness_um, drawn.film_gap_um)
 
     @property
     def capacitance_gradient(self) -> float:
-        """dC/dx of one comb, F/m; a transfer function has no comb, and a gyroscope is driven by forces."""
+        """dC/dx of one comb, F/m; a transfer function has no comb, and the combs of a gyroscope are its electrodes."""
         if self.usual_plant != "linear":
             return 0.0
         if self.force_n_per_v is not None:
@@ -235,12 +242,18 @@ class Device(BlockParams):
         first, second = self.stators_v
         return -self.capacitance_gradient * (first - second)
 
+    def _with_electrodes(self, device: TwoAxis) -> TwoAxis:
+        own = self.electrodes or Electrodes()
+        if self.drawn_gyroscope is None or self.geometry is None:
+            return own.on(device, None, None)
+        return own.on(device, self.geometry, self.drawn_gyroscope.sense(self.geometry))
+
     def oscillator(self) -> Oscillator:
         """Return the device in the units of the loop."""
         if self.transfer_function is not None:
             return self.transfer_function.oscillator()
         if (axes := self.two_axes) is not None:
-            return axes.two_axis()
+            return self._with_electrodes(axes.two_axis())
         si = self.resolved
         return Oscillator(
             mass=mass_mg(si["mass_kg"]),
@@ -278,10 +291,15 @@ class Device(BlockParams):
             if self.drawn_gyroscope is not None and self.geometry is not None:
                 scale = quoted["gyro.scale_pm_per_dps"]
                 quoted |= self.drawn_gyroscope.metrics(self.geometry, stiffness_scale, scale)
-            return quoted
+            scaled = axes.two_axis().scaled(stiffness_scale, damping_scale)
+            return quoted | electrodes.figures(self._with_electrodes(scaled))
         quoted |= {"force_n_per_v": abs(force), "static_gain_um_per_v": force / stiffness * 1e6}
-        if self.fringing is not None:
+        if self.fringing is not None and self.force_n_per_v is None:
             quoted["fringing_factor"] = self.fringing_factor
+            if self.fringing == "grounded_plane":
+                drawn = self.drawing
+                beams = None if self.geometry is None else stiffness
+                quoted |= levitation.figures(drawn, self.fingers or drawn.fingers, self.stators_v, beams)
         if self.printed is not None:
             quoted |= self.printed.metrics()
         return quoted

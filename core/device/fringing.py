@@ -78,15 +78,15 @@ def fringing_factor(fringing: Fringing, width_um: float, gap_um: float, thicknes
 
 @lru_cache(maxsize=4096)
 def _factor(has_plane: bool, width: float, gap: float, thickness: float, height: float) -> float:
-    finger = _panels(width, thickness)
+    finger = finger_panels(width, thickness)
     rotor = finger.copy()
     rotor[:, ::2] = width + gap - finger[:, ::2]
-    engaged = _charge(np.concatenate([finger, rotor]), len(finger), has_plane, 2.0 * (width + gap), height)
-    alone = _charge(finger, len(finger), True, 2.0 * (width + gap), height) if has_plane else 0.0
+    engaged = charge(np.concatenate([finger, rotor]), len(finger), has_plane, 2.0 * (width + gap), height)
+    alone = charge(finger, len(finger), True, 2.0 * (width + gap), height) if has_plane else 0.0
     return (engaged - alone) * gap / (2.0 * thickness)
 
 
-def _panels(width: float, thickness: float) -> FloatArray:
+def finger_panels(width: float, thickness: float) -> FloatArray:
     """Return the ends (x, y, x, y) of panels around the right half of a finger that is centred at x = 0."""
     half = 0.5 * width
     corner = [cos(0.5 * pi * step / PANELS) for step in range(PANELS + 1)]  # 1 to 0, closer together at 1
@@ -97,7 +97,7 @@ def _panels(width: float, thickness: float) -> FloatArray:
     return np.array([(*one, *other) for one, other in pairwise(nodes)])
 
 
-def _charge(panels: FloatArray, driven: int, has_plane: bool, pitch: float, height: float) -> float:
+def charge(panels: FloatArray, driven: int, has_plane: bool, pitch: float, height: float) -> float:
     """Return the charge per length of a finger at 1 V over the permittivity; the others, and the plane, are at 0 V."""
     count = len(panels)
     lengths = np.abs(panels[:, 2] - panels[:, 0]) + np.abs(panels[:, 3] - panels[:, 1])  # along an axis

@@ -92,6 +92,36 @@ QUANTITIES = (
             "turns at a bias without any travel",
         ),
     ),
+    DeviceFigure(
+        "fringing_factor",
+        "Fringing",
+        "1",
+        Equation(
+            "field of the cross-section, over plates",
+            r"\frac{dC}{dx}\bigg/\frac{2n\varepsilon_0t}g,\quad\frac{dC}{dx}=n\left(C'_{engaged}-C'_{stator}\right)",
+            "1.5",
+        ),
+    ),
+    DeviceFigure(
+        "levitation_nn_per_v2",
+        "Levitation",
+        "nN/V^2",
+        Equation(
+            "upwards, of one comb; the plant is planar and does not rise",
+            r"\frac{F_z}{V^2}=\tfrac12nL_0\frac{dC'}{dz}",
+            "Tang, Lim and Howe 1992",
+        ),
+    ),
+    DeviceFigure(
+        "lift_nm",
+        "Lift at the bias",
+        "nm",
+        Equation(
+            "balance; the plant is planar and does not rise",
+            r"k_zz=(V_1^2+V_2^2)\,\frac{F_z(z)}{V^2},\quad k_z=k_x\left(\frac tw\right)^2",
+            "Tang, Lim and Howe 1992",
+        ),
+    ),
     *(
         DeviceFigure(
             f"gyro.mode_hz.{n}",
@@ -202,6 +232,56 @@ QUANTITIES = (
             Equation("per bias and volt", r"\frac{F}{V_bv}=4n\varepsilon_0\frac tg", "1.3.2"),
         )
         for axis in ("x", "y")
+    ),
+    DeviceFigure(
+        "gyro.feed_through_pm_un_af",
+        "Feed-through per parasitic capacitance",
+        "pm/uN/aF",
+        Equation(
+            "charge over charge",
+            r"\frac s{C_p}=\frac1{\kappa_x\kappa_y},\quad\kappa=2\frac{dC}{dx}V_b",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.feed_through_dps_af",
+        "The same as a rate",
+        "deg/s/aF",
+        Equation(
+            "open loop, x at resonance",
+            r"\frac{|\Omega_p|}{C_p}=\frac{d_{xx}\,|k_{yy}-m_y\omega_1^2|}{4m_c\kappa_x\kappa_y}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.softening_n_m_per_v2",
+        "Softening along y",
+        "N/m/V^2",
+        Equation(
+            "parallel plates",
+            r"-\frac{k_e}{V^2}=\frac1{2}\frac{d^2C}{dy^2}=\frac{2\varepsilon_0A}{g^3}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.matching_v",
+        "Tuning at matched modes",
+        "V",
+        Equation(
+            "y rings with x",
+            r"V_m=\sqrt{\frac{(k_{yy}-m_yk_{xx}/m_x)\,g^3}{2\varepsilon_0A}}",
+            "not in the text",
+        ),
+    ),
+    DeviceFigure(
+        "gyro.pull_in_v",
+        "Pull-in of the tuning electrode",
+        "V",
+        Equation(
+            "nothing is left of the spring along y",
+            r"V_{pi}=\sqrt{\frac{(k_{yy}-k_{xy}^2/k_{xx})\,g^3}{2\varepsilon_0A}}",
+            "not in the text",
+        ),
     ),
     DeviceFigure(
         "gyro.sense_ff_per_um",

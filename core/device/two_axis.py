@@ -11,6 +11,55 @@ from core.block import FloatArray, Oscillator
 from core.elementary import atan2
 
 
+@dataclass(frozen=True)
+class PushPull:
+    """Two combs along an axis, as the loop takes them.
+
+    Parameters
+    ----------
+    gradient : float
+        dC/dx of one comb, uN/V^2.
+    bias_v : float
+        Of both combs; the voltage is added to one of them and taken from the other.
+    """
+
+    gradient: float
+    bias_v: float
+
+    @property
+    def per_volt(self) -> float:
+        r"""Force per volt, :math:`2\frac{dC}{dx}V_b`, uN/V."""
+        return 2.0 * self.gradient * self.bias_v
+
+
+@dataclass(frozen=True)
+class TuningPlates:
+    r"""Plates on both sides of the mass along y, at the same voltage against it, as the loop takes them.
+
+    .. math:: F_y=\tfrac12V^2\frac{dC}{dy}=\frac{pV^2gy}{(g^2-y^2)^2},\quad k_e=-\tfrac12V^2\frac{d^2C}{dy^2}\Big|_0
+        =-\frac{pV^2}{g^3},\quad p=2\varepsilon_0A
+
+    Parameters
+    ----------
+    pull : float
+        p, uN um^2/V^2.
+    gap : float
+        g, um.
+    """
+
+    pull: float
+    gap: float
+
+    @property
+    def per_v2(self) -> float:
+        """Softening per squared volt, uN/um."""
+        return self.pull / (self.gap * self.gap * self.gap)
+
+    def pull_in_v(self, stiffness: float) -> float:
+        r"""Return the voltage that takes all of a stiffness in uN/um away, :math:`\sqrt{kg^3/p}`."""
+        return math.sqrt(stiffness / self.per_v2)
+
+
 @dataclass(frozen=True, kw_only=True)
 class TwoAxis(Oscillator):
     r"""A mass on two coupled axes, x driven and y sensing, in the units of the loop.
@@ -29,6 +78,10 @@ class TwoAxis(Oscillator):
         uN/um.
     amplitude : float
         Amplitude x is meant to swing with, um.
+    comb_x, comb_y : PushPull, optional
+        Combs along the axes.
+    tuning : TuningPlates, optional
+        Plates that soften the spring along y.
     """
 
     mass_y: float
@@ -38,6 +91,9 @@ class TwoAxis(Oscillator):
     stiffness_xy: float
     stiffness_y: float
     amplitude: float = 1.0
+    comb_x: PushPull | None = None
+    comb_y: PushPull | None = None
+    tuning: TuningPlates | None = None
 
     @property
     def in_air(self) -> bool:
@@ -75,6 +131,16 @@ class TwoAxis(Oscillator):
             damping_xy=damping * self.damping_xy,
             damping_y=damping * self.damping_y,
         )
+
+    @property
+    def free_stiffness_y(self) -> float:
+        r"""Stiffness along y with x free, :math:`k_{yy}-k_{xy}^2/k_{xx}`, uN/um."""
+        return self.stiffness_y - self.stiffness_xy * self.stiffness_xy / self.stiffness
+
+    def tuned(self, volts: float) -> TwoAxis:
+        """Return the device with a voltage on its tuning electrode."""
+        taken = 0.0 if self.tuning is None else self.tuning.per_v2 * volts * volts
+        return replace(self, stiffness_y=self.stiffness_y - taken)
 
     def modes(self) -> list[tuple[float, float]]:
         r"""Return frequency (rad/ms) and quality factor of the damped modes that ring, the lowest first.

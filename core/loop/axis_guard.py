@@ -6,13 +6,13 @@ import math
 from typing import Any
 
 from core.block import Block, BlockParams, Context, parameter
-from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, OK, ON_THE_RAIL
+from core.loop.guard import BEYOND_TRAVEL, NOT_FINITE, OK, ON_THE_RAIL, PULLED_IN
 from core.ports import BlockPorts, output, reads
 from core.record import Record
 
 
 class AxisGuard(Block):
-    """Trips on a value that is not finite, on travel beyond the stops, on a force at its limit most of the time.
+    """Trips on a value that is not finite, travel beyond the stops, a force at its limit most of the time, pull-in.
 
     Forces alternate, and so leave the limit twice in every period even when a loop has run away: the measure is the
     time at the limit less a quarter of the time below it. A force that is at its limit a fifth of the time is endured.
@@ -49,6 +49,7 @@ class AxisGuard(Block):
         velocity: float = reads("plant.{axis}_velocity", "um/ms", "true velocity")
         command: float = reads("@command", "uN", "force asked for")
         saturated: float = reads("drive.{axis}.saturated", "1", "1 while the drive is at its limit")
+        pulled_in: float = reads("plant.pulled_in?", "1", "1 where an electrode has pulled the mass in")
         trip: float = output("1", "0 while all is well, else why the board stopped", hidden=True)
 
     @classmethod
@@ -67,6 +68,8 @@ class AxisGuard(Block):
             code = x.before
         elif not (math.isfinite(x.displacement) and math.isfinite(x.velocity) and math.isfinite(x.command)):
             code = NOT_FINITE
+        elif x.pulled_in != 0.0:
+            code = PULLED_IN
         elif abs(x.displacement) > p.travel_um:
             code = BEYOND_TRAVEL
         elif s.ticks_at_limit > p.rail_ticks:

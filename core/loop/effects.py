@@ -81,6 +81,7 @@ class Effects(Block):
             "damping of the second axis over nominal, in addition to the change of all axes"
         )
         second_drive_gain: float = _scale("force on the second axis over the one applied")
+        second_sensor_offset: float = _sum("um", "added to the measurement of the second axis")
 
     @classmethod
     def neutral(cls) -> dict[str, float]:
@@ -113,6 +114,7 @@ class Effects(Block):
         x.second_stiffness_scale = 1.0
         x.second_damping_scale = 1.0
         x.second_drive_gain = 1.0
+        x.second_sensor_offset = 0.0
         x.stiffness_scale = x.stiffness
         x.elasticity_scale = x.stiffness  # temperature and age change the material of every beam
         x.damping_scale = x.damping

@@ -10,12 +10,14 @@ from core.ports import BlockPorts, output, reads
 from core.record import Record
 
 OK, NOT_FINITE, BEYOND_TRAVEL, ON_THE_RAIL, TOUCHING, SHORTED = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
+PULLED_IN = 6.0
 REASONS = {
     1: ("the {signal} is not a finite number", "command"),
     2: ("the shuttle went beyond its travel", "plant.displacement"),
     3: ("the drive stayed at its limit", "drive.voltage"),
     4: ("the fingers touched a stator", "plant.lateral"),
     5: ("a comb is shorted", "plant.short"),
+    6: ("the tuning electrode pulled the mass in", "plant.pulled_in"),
 }
 
 

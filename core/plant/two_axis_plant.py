@@ -96,16 +96,29 @@ def start(p: TwoAxisPlant.Packed, x: TwoAxisPorts) -> None:
 @kernel
 def move(b: TwoAxisBody, m: TwoAxisMotion, x: TwoAxisPorts) -> None:
     """Advance a device with the effects of faults and environment, unless it starts; write energy and orbit."""
+    take_now(b, m, x)
+    go(b, m, x, 0.0)
+
+
+@kernel
+def take_now(b: TwoAxisBody, m: TwoAxisMotion, x: TwoAxisPorts) -> None:
+    """Take a device with the effects of faults and environment."""
     take(b, m, x.mass_scale, x.stiffness_scale, x.damping_scale)
     m.damping_xy += x.cross_damping
     m.damping_y *= x.second_damping_scale
     m.stiffness_xy += x.cross_stiffness
     m.stiffness_y *= x.second_stiffness_scale
+
+
+@kernel
+def go(b: TwoAxisBody, m: TwoAxisMotion, x: TwoAxisPorts, pilot: float) -> None:
+    """Advance a device as it is now, with a held force along y besides the drive's, unless it starts."""
     if x.tick > 0.0:
         gain = x.drive_gain
         push_x(m, gain * x.force_x, gain * x.middle_x, gain * x.end_x, x.acceleration)
         gain = x.second_drive_gain
         push_y(m, gain * x.force_y, gain * x.middle_y, gain * x.end_y, x.acceleration_side)
+        m.force_y += pilot
         m.x, m.y, m.x_velocity, m.y_velocity = x.x, x.y, x.x_velocity, x.y_velocity
         advance(b, m, x.rate * RAD_MS_PER_DEG_S, x.tick - 1.0)
         x.x, x.y = flush_tiny(m.x), flush_tiny(m.y)

@@ -38,7 +38,13 @@ def traced(board: Board) -> list[str]:
     """Return the signals that the figures need."""
     axes = board.spec.axes
     moved = [f"plant.{axis}{of}" for axis in axes for of in ("", "_velocity")]
-    return [*moved, *(f"drive.{axis}.force" for axis in axes), "rate.rate", *(f"{board.spec.active}.{n}" for n in READ)]
+    return [
+        *moved,
+        "plant.split",
+        *(f"drive.{axis}.force" for axis in axes),
+        "rate.rate",
+        *(f"{board.spec.active}.{n}" for n in READ),
+    ]
 
 
 def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -> dict[str, float]:
@@ -55,6 +61,8 @@ def rate_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch) -
     if read is not None:
         figures |= _reading(board, true, read, pieces, stretch)
     driving = board.spec.active
+    if (split := trace.get("plant.split")) is not None:
+        figures["rate.split_hz"] = mean(split[_settled(pieces[-1], stretch)])
     if (quadrature := trace.get(f"{driving}.quadrature")) is not None:
         figures["rate.quadrature_dps"] = mean(quadrature[_settled(pieces[-1], stretch)])
     if (trusted := trace.get(f"{driving}.trusted")) is not None:

@@ -27,6 +27,18 @@ STAGES = {"sampler": {"antialias_khz": 30.0, "jitter_us": 0.3}, "amplifier": {"d
           "amplifier_khz": 40.0}}  # fmt: skip
 """Values that put a stage of the board on a bench."""
 FORCED = {"slots": {"drive": "forced_drive"}, "controller": {"kind": "open_loop_rate"}}
+TUNED = {
+    "device": {"id": "gyro-c", "electrodes": {"tuning": {}}},
+    "plant": {"model": "tuned_gyroscope"},
+    "slots": {"drive": "drive_loop"},
+}
+COMB = {"fingers": 200, "thickness_um": 60.0, "gap_um": 3.0}
+COMBS = {
+    "device": {"id": "gyro-a", "electrodes": {"drive": COMB, "sense": COMB}},
+    "plant": {"model": "gyroscope"},
+    "drive.quantum_un": 0.0,
+}
+"""Values that put electrodes on the bench with axes, which is then of one device."""
 ENDS = ("not a finite", "touched", "shorted", "the supervisor")
 PROFILES = (
     {"kind": "step"},
@@ -107,10 +119,14 @@ def chosen(entry: type[Block]) -> dict[str, Any]:
 
 def chosen_of_axes(entry: type[Block]) -> dict[str, Any]:
     """Return the values that put a block on the rich bench with axes."""
+    if entry.name == "tuned_gyroscope":
+        return TUNED
     if entry.family == "plant":
         return {"plant": {"model": entry.name}}
     if entry.name == "axis_drive":  # its forces may move between samples only with these
-        return FORCED
+        return {**FORCED, **COMBS}
+    if entry.slot == "tuning":
+        return {**TUNED, "slots": {"drive": "drive_loop", "tuning": entry.name}}
     if entry.family == "control":
         return {"controller.kind": entry.name} if entry.slot == "sense" else {f"slots.{entry.slot}": entry.name}
     if entry.family in ("rate", "readout", "diagnose"):

@@ -12,7 +12,7 @@ from core.errors import InputError
 from tests.lab import do, fault, inject, make, play
 from tests.two_axis import DAMPING, GYRO, OMEGA, STIFFNESS, STILL, rate_stiffness, replay
 
-OWN = ("quadrature", "drive_loss", "sense_stiffness", "finger_pair_short", "package_leak")
+OWN = ("feed_through", "quadrature", "drive_loss", "sense_stiffness", "finger_pair_short", "package_leak")
 UNCOUPLED = {"stiffness_xy_n_m": 0.0, "damping_xy_ns_m": 0.0}
 CROSS = np.array([[0.0, 1.0], [1.0, 0.0]])
 
@@ -77,6 +77,31 @@ def test_a_rebalanced_axis_reads_the_fault_as_quadrature():
     assert trace["force_to_rebalance.quadrature"][0] == pytest.approx(200.0, rel=3e-3)
     assert trace["force_to_rebalance.quadrature"][-1] == pytest.approx(700.0, rel=3e-3)
     assert abs(trace["force_to_rebalance.rate"][-1]) < 0.5
+
+
+def test_the_drive_is_seen_by_the_pick_off_of_the_sensing_axis_alone():
+    board = make(STILL, base=GYRO)
+    healthy = play(board, 50)
+    do(board, fault("feed_through", 300.0))
+    trace = play(board, 500)
+    errors = trace["sensor.y.displacement"] - trace["plant.y"]
+    # the sensor looks before the drive of this tick moves
+    np.testing.assert_allclose(errors[1:], 300e-6 * trace["drive.x.force"][:-1], rtol=1e-9, atol=1e-15)
+    assert (trace["sensor.x.displacement"] == trace["plant.x"]).all()
+    assert (healthy["sensor.y.displacement"] == healthy["plant.y"]).all()
+
+
+def test_feed_through_is_read_as_the_rate_of_the_closed_form():
+    """-s d_xx (k_yy - m_y w^2)/4 m_c, times the cosine of half a sample, of the nominal sense axis of gyro-c."""
+    base = {**GYRO, "controller": {"kind": "open_loop_rate"}}
+    uncoupled = {"device.id": "gyro-c", "device.gyroscope": {"stiffness_xy_n_m": 0.0}}
+    board = make({**STILL, **uncoupled}, base=base)
+    do(board, fault("feed_through", 2000.0))
+    read = play(board, 60_000)["open_loop_rate.rate"]
+    omega = np.sqrt(863.7569 / 1.42)
+    spring = 987.2898 - 1.58 * omega**2
+    expected = -2000e-6 * 7.4945e-3 * spring / (4.0 * 1.58) * np.cos(0.5 * omega * 0.01)
+    assert read[-1] == pytest.approx(np.degrees(1e3 * expected), rel=5e-3)
 
 
 def test_half_the_drive_takes_twice_the_force():

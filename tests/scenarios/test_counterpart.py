@@ -56,6 +56,12 @@ def test_of_a_gyroscope_only_the_sense_axis_is_opened():
     assert counterpart(get("ch6-sense-axis-sync"), "pid") is None
 
 
+def test_a_slot_between_drive_and_sense_has_its_usual_controller():
+    other = counterpart(get("ch6-mode-matching"))
+    assert other is not None
+    assert other.spec.driving == {"drive": "drive_loop", "tuning": "tuning_voltage", "sense": "open_loop_rate"}
+
+
 def test_a_claim_for_a_controller_is_missed_without_it():
     """By twice the tolerance; any other expectation says why it compares with nothing."""
     wrong = []

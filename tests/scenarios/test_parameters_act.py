@@ -61,7 +61,17 @@ def banks(first: float, second: float, other: float = 1.2) -> dict[str, Any]:
 
 BANKS = {name: value for name, value in banks(1.0, 1.5).items() if not name.startswith("own.")}
 LOUD = {"reference.amplitude_v": 40.0}
+COMB = {"fingers": 200, "thickness_um": 60.0, "gap_um": 3.0}
+COMBS = {"plant": {"model": "gyroscope"}, "device": {"id": "gyro-a", "electrodes": {"drive": COMB, "sense": COMB}}}
+MATCHING = {"own.pilot_hz": 2000.0, "own.settle_ms": 0.0, "own.measure_ms": 1.5, "own.start_v": 35.0}
 WHERE: dict[str, dict[str, Any]] = {
+    "axis_drive.by": COMBS,
+    "axis_drive.limit_v": {**COMBS, "own.by": "volts", "own.limit_v": 1e-4, "to": 2e-4},
+    **{f"mode_matching.{name}": MATCHING for name in ("pilot_nm", "start_v", "gain", "split_hz")},
+    "mode_matching.pilot_hz": {**MATCHING, "to": 2500.0},
+    "mode_matching.settle_ms": {**MATCHING, "to": 0.1},
+    "mode_matching.measure_ms": {**MATCHING, "to": 2.0},
+    "mode_matching.most_share": {"own.start_v": 55.0, "to": 0.5},
     "prbs.chip_rate_hz": {"to": 20_000.0},
     "square.frequency_hz": {"to": 2000.0},
     "square.duty": {"own.frequency_hz": 2000.0},

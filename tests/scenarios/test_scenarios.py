@@ -158,6 +158,14 @@ def other_value(parameter: registry.ParameterCard) -> Any:
 AXES: dict[str, Any] = {"device": {"id": "gyro-a"}, "plant": {"model": "gyroscope_pair"}}
 """Settings of a bench for blocks of axes."""
 
+TUNED: dict[str, Any] = {
+    "device": {"id": "gyro-c", "electrodes": {"tuning": {}}},
+    "plant": {"model": "tuned_gyroscope"},
+    "slots": {"drive": "drive_loop"},
+    "controller": {"kind": "open_loop_rate"},
+}
+"""Settings of a bench for blocks of a gyroscope with a tuning electrode."""
+
 BANK = {"kind": "mmae"}
 
 
@@ -168,14 +176,15 @@ def tables(family: str) -> Iterator[tuple[str, Any, dict[str, Any]]]:
         if family == "reference":
             yield "reference", block, {"reference": {**kind, "amplitude_v": 1.0}}
         elif family == "plant":
-            yield "plant", block, {"plant": {"model": block.name}}
+            yield "plant", block, TUNED if block.name == "tuned_gyroscope" else {"plant": {"model": block.name}}
         elif family == "sense":
             yield f"sensors.{block.name}", block, {}
             if any(port.name == "displacement" for port in block.outputs):
                 yield "sensor", block, {"sensor": kind}
         elif family == "control":
-            yield f"controllers.{block.name}", block, {}
-            if block.slot != "drive":
+            tuned = {**TUNED, "slots": {"drive": "drive_loop", "tuning": block.name}} if block.slot == "tuning" else {}
+            yield f"controllers.{block.name}", block, tuned
+            if block.slot not in ("drive", "tuning"):
                 yield "controller", block, {"controller": kind}
         elif family == "rate":
             yield "rate", block, {"rate": kind}
@@ -266,7 +275,7 @@ def test_set_reaches_every_number_of_a_drawn_gyroscope():
         assert base.spec.device.metrics() != found.spec.device.metrics(), f"{name} changes nothing"
 
 
-TABLES_OF_A_DEVICE = {"id", "geometry", "transfer_function", "gyroscope", "drawn_gyroscope", "printed"}
+TABLES_OF_A_DEVICE = {"id", "geometry", "transfer_function", "gyroscope", "drawn_gyroscope", "electrodes", "printed"}
 
 
 def test_set_reaches_every_value_of_a_device():

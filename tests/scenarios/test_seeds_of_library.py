@@ -39,6 +39,7 @@ DEAR = {
     "ch5-tolerance-table",
     "ch5-detectors",
     "ch6-drift",
+    "ch6-mode-matching",
     "gyro-allan",
     "gyro-allan-three-noises",
     "gyro-thermal-floor",

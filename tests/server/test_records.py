@@ -149,7 +149,8 @@ def test_a_calibration_finds_the_device_and_goes_on_any_bench(live: Live, foreig
     again = live.http.post(DEVICES, json={**body, "name": "mine", "record": foreign["id"]})
     assert again.status_code == 409 and again.json()["error"]["field"] == "name"
     device = saved.json()["id"]
-    for scenario, record in (("first-look", foreign["id"]), ("first-look", ""), ("ch5-seven-step", "")):
+    benches = (("first-look", foreign["id"]), ("first-look", ""), ("ch5-seven-step", ""), ("ch1-fringing", ""))
+    for scenario, record in benches:
         bench = live.bench(scenario, record=record, device=device, paused=True)
         toml = live.http.get(f"/api/v1/benches/{bench['id']}/scenario").text
         assert f"mass_kg = {found['values']['device.mass_kg']!r}" in toml

@@ -100,18 +100,18 @@ def test_process_i_takes_a_step_every_ten_to_the_i_samples(dt_ms, samples):
     row = Row(("rate", "constant", {"bias_instability_deg_h": B}), dt_ms=dt_ms, seed=5)
     decay, kick = math.exp(-1 / samples), math.sqrt(1 - math.exp(-2 / samples))
     for tick, moving in ((7, 1), (10, 2), (130, 2), (100, 3), (47_000, 4), (300_000_000, 9), (10**9, 9)):
-        before = np.array(row.state(0).drift.flicker)
+        before = np.array(row.state(0).drift.flicker.processes)
         row.tick = tick
         shown = row.play(1)[0, 0]
         assert shown == pytest.approx(SI * math.sqrt(math.log(10) / math.pi) * before.sum(), rel=1e-12)
         after = before.copy()
         for i in range(moving):
             after[i] = decay * before[i] + kick * normal(key(5, f"rate.flicker.{i}"), tick // 10**i)
-        np.testing.assert_allclose(row.state(0).drift.flicker, after, rtol=1e-13)
+        np.testing.assert_allclose(row.state(0).drift.flicker.processes, after, rtol=1e-13)
 
 
 def test_flicker_begins_as_if_it_had_gone_on_for_ever():
-    starts = np.array([Row(("rate", "noise", {}), seed=seed).state(0).drift.flicker for seed in range(400)])
+    starts = np.array([Row(("rate", "noise", {}), seed=seed).state(0).drift.flicker.processes for seed in range(400)])
     assert np.all(np.abs(starts.mean(axis=0)) < 4.5 / math.sqrt(400))
     assert np.all(np.abs(starts.var(axis=0) - 1.0) < 4.5 * math.sqrt(2 / 400))
 

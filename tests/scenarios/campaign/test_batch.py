@@ -19,7 +19,7 @@ TICKS = 800
 ALONE = (
     "ch1-shock ch3-baselines ch3-indirect-mrac-b30 ch3-mrac-noise ch3-optical-loop ch3-pull-in-map ch3-stvsc-estimate "
     "ch3-stvsc-pull-in ch3-vsc ch4-double-integrator-gains ch4-tracking-vsmrc ch5-light-two-devices "
-    "ch6-drift ch6-phase-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
+    "ch6-drift ch6-mode-matching ch6-phase-sync gyro-comb-device gyro-forced-drive gyro-half-sample gyro-not-exciting "
     "gyro-off-resonance gyro-small-rates"
 ).split()
 """Scenarios with twins, commands that wait for conditions; and a scenario that trips."""

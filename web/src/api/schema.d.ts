@@ -11184,7 +11184,7 @@ export interface components {
          */
         AxisDrive: {
             /**
-             * @description limit to either side, µN
+             * @description limit to either side, by force, µN
              * @default 1000
              */
             limit_un?: number;
@@ -11198,6 +11198,17 @@ export interface components {
              * @default 0
              */
             bits?: number;
+            /**
+             * @description force as such, or volts on the combs of the device; the converter then has limit_v
+             * @default force
+             * @enum {string}
+             */
+            by?: "force" | "volts";
+            /**
+             * @description limit to either side, by volts, V
+             * @default 20
+             */
+            limit_v?: number;
             /**
              * @description held by a converter, or analogue, for controllers that know their force between samples
              * @default held
@@ -11429,6 +11440,23 @@ export interface components {
              * @default 5000
              */
             samples?: number;
+        };
+        /**
+         * Comb
+         * @description Two combs along an axis, with the rotor at 0 V between stators at `V_b+v` and `V_b-v`.
+         */
+        Comb: {
+            /**
+             * @description bias of both combs, V
+             * @default 10
+             */
+            bias_v?: number;
+            /** @description rotor fingers per side; as drawn unless given */
+            fingers?: number | null;
+            /** @description structural thickness; as drawn unless given, µm */
+            thickness_um?: number | null;
+            /** @description gap between fingers as etched; as drawn unless given, µm */
+            gap_um?: number | null;
         };
         /**
          * Comparator
@@ -11800,7 +11828,7 @@ export interface components {
             thickness_um?: number | null;
             /** @description gap between fingers as etched, µm */
             finger_gap_um?: number | null;
-            /** @description field beyond the facing sides of fingers: over a grounded plane, or free of one */
+            /** @description field beyond the facing sides of fingers: over a grounded plane, or free of one; without effect beside force_n_per_v, which contains it */
             fringing?: ("grounded_plane" | "free") | null;
             /** @description of a plant that is no resonator */
             transfer_function?: components["schemas"]["TransferFunction"] | null;
@@ -11808,6 +11836,8 @@ export interface components {
             gyroscope?: components["schemas"]["GyroscopeTable"] | null;
             /** @description data of a device with two axes in addition to the drawing */
             drawn_gyroscope?: components["schemas"]["DrawnGyroscope"] | null;
+            /** @description electrodes of a device with two axes */
+            electrodes?: components["schemas"]["Electrodes"] | null;
             /** @description printed figures of the dissertation */
             printed?: components["schemas"]["PrintedFigures"] | null;
         };
@@ -12061,6 +12091,18 @@ export interface components {
              * @default 1
              */
             every?: number;
+        };
+        /**
+         * Electrodes
+         * @description Electrodes of a device with two axes; each may be missing. A drawn device has the combs of its drawing.
+         */
+        Electrodes: {
+            /** @description combs along x */
+            drive?: components["schemas"]["Comb"] | null;
+            /** @description combs along y */
+            sense?: components["schemas"]["Comb"] | null;
+            /** @description plates that soften the spring along y */
+            tuning?: components["schemas"]["TuningElectrode"] | null;
         };
         /**
          * Environment
@@ -14342,11 +14384,11 @@ export interface components {
         };
         /**
          * PickOffSensor
-         * @description Pick-off of an axis: Displacement and velocity of one axis plus white noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis.
+         * @description Pick-off of an axis: Displacement and velocity of one axis plus noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis.
          */
         PickOffSensor: {
             /**
-             * @description Pick-off of an axis: Displacement and velocity of one axis plus white noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis. (enum property replaced by openapi-typescript)
+             * @description Pick-off of an axis: Displacement and velocity of one axis plus noise, `z_i=q\,[(x_i+v_i)/q]`; one for every axis. (enum property replaced by openapi-typescript)
              * @enum {string}
              */
             kind: "pick_off";
@@ -14355,6 +14397,11 @@ export interface components {
              * @default 0
              */
             noise_pm_rthz?: number;
+            /**
+             * @description flicker density of the displacement at 1 Hz, pm/√Hz
+             * @default 0
+             */
+            flicker_pm_rthz?: number;
             /**
              * @description noise density of the velocity, nm/s/√Hz
              * @default 0
@@ -14548,7 +14595,7 @@ export interface components {
             drive?: "held" | "analogue";
         };
         /** Plant */
-        Plant: components["schemas"]["GyroscopePlant"] | components["schemas"]["GyroscopePairPlant"] | components["schemas"]["LinearPlant"] | components["schemas"]["NonlinearPlant"] | components["schemas"]["PlanarPlant"] | components["schemas"]["SlavedLateralPlant"] | components["schemas"]["TransferFunctionPlant"];
+        Plant: components["schemas"]["GyroscopePlant"] | components["schemas"]["GyroscopePairPlant"] | components["schemas"]["LinearPlant"] | components["schemas"]["NonlinearPlant"] | components["schemas"]["PlanarPlant"] | components["schemas"]["SlavedLateralPlant"] | components["schemas"]["TransferFunctionPlant"] | components["schemas"]["TunedGyroscopePlant"];
         /**
          * PointTable
          * @description Points from outside: a row for each, with values for some paths of the scenario.
@@ -15458,6 +15505,8 @@ export interface components {
             slots?: {
                 /** @enum {unknown} */
                 drive?: "drive_loop" | "drive_tracking" | "forced_drive" | "waveform_drive";
+                /** @enum {unknown} */
+                tuning?: "mode_matching" | "tuning_voltage";
             };
             /** @description the controller that drives */
             controller?: components["schemas"]["Controller"];
@@ -16612,6 +16661,79 @@ export interface components {
             drive?: "held" | "analogue";
         };
         /**
+         * TunedGyroscopePlant
+         * @description Gyroscope with a tuning electrode: A gyroscope whose spring along y is softened by plates at a voltage V on both sides, which matches its modes.
+         */
+        TunedGyroscopePlant: {
+            /**
+             * @description Gyroscope with a tuning electrode: A gyroscope whose spring along y is softened by plates at a voltage V on both sides, which matches its modes. (enum property replaced by openapi-typescript)
+             * @enum {string}
+             */
+            model: "tuned_gyroscope";
+            /**
+             * @description displacement along x at the start, µm
+             * @default 0
+             */
+            initial_x_um?: number;
+            /**
+             * @description displacement along y at the start, µm
+             * @default 0
+             */
+            initial_y_um?: number;
+            /**
+             * @description velocity along x at the start, µm/ms
+             * @default 0
+             */
+            initial_x_velocity_um_ms?: number;
+            /**
+             * @description velocity along y at the start, µm/ms
+             * @default 0
+             */
+            initial_y_velocity_um_ms?: number;
+            /**
+             * @description thermomechanical force noise of the damping of both axes
+             * @default true
+             */
+            thermal_noise?: boolean;
+            /**
+             * @description ticks of the board between two samples of the block
+             * @default 1
+             */
+            every?: number;
+            /**
+             * @description held by a converter, or an analogue generator (open loop only)
+             * @default held
+             * @enum {string}
+             */
+            drive?: "held" | "analogue";
+        };
+        /**
+         * TuningElectrode
+         * @description Plates that face the mass across y on both sides, and take stiffness away, `k_e=-2\varepsilon_0AV^2/g^3`.
+         */
+        TuningElectrode: {
+            /**
+             * @description plates on each side
+             * @default 20
+             */
+            plates?: number;
+            /**
+             * @description length of a plate that faces the mass, µm
+             * @default 400
+             */
+            length_um?: number;
+            /**
+             * @description structural thickness, µm
+             * @default 60
+             */
+            thickness_um?: number;
+            /**
+             * @description gap as etched; the gap behind a plate is wide, µm
+             * @default 3
+             */
+            gap_um?: number;
+        };
+        /**
          * TwoOutputDiagnoser
          * @description Kalman bank, displacement and velocity: The bank with C = I, equation 5.2.4: both states are measured.
          */
@@ -17201,6 +17323,7 @@ export type Campaign = components['schemas']['Campaign'];
 export type CapacitiveSensor = components['schemas']['CapacitiveSensor'];
 export type ChirpReference = components['schemas']['ChirpReference'];
 export type CoherenceStudy = components['schemas']['CoherenceStudy'];
+export type Comb = components['schemas']['Comb'];
 export type Comparator = components['schemas']['Comparator'];
 export type ConsistencyDiagnoser = components['schemas']['ConsistencyDiagnoser'];
 export type ConstantRate = components['schemas']['ConstantRate'];
@@ -17214,6 +17337,7 @@ export type DrawnGyroscope = components['schemas']['DrawnGyroscope'];
 export type Drive = components['schemas']['Drive'];
 export type EkfDiagnoser = components['schemas']['EkfDiagnoser'];
 export type EkfIdentifier = components['schemas']['EkfIdentifier'];
+export type Electrodes = components['schemas']['Electrodes'];
 export type Environment = components['schemas']['Environment'];
 export type EstimatesStudy = components['schemas']['EstimatesStudy'];
 export type ExcitationIdentifier = components['schemas']['ExcitationIdentifier'];
@@ -17325,6 +17449,8 @@ export type SwitchingSupervisor = components['schemas']['SwitchingSupervisor'];
 export type Tone = components['schemas']['Tone'];
 export type TransferFunction = components['schemas']['TransferFunction'];
 export type TransferFunctionPlant = components['schemas']['TransferFunctionPlant'];
+export type TunedGyroscopePlant = components['schemas']['TunedGyroscopePlant'];
+export type TuningElectrode = components['schemas']['TuningElectrode'];
 export type TwoOutputDiagnoser = components['schemas']['TwoOutputDiagnoser'];
 export type VscController = components['schemas']['VscController'];
 export type VsmrcController = components['schemas']['VsmrcController'];
