@@ -30,11 +30,19 @@ class UnitError(InputError):
         The mistake, and the allowed form.
     line, column : int
         Where it is, both from 1.
+    others : tuple of UnitError
+        The other errors of the text, in its order; they are in the hint too.
     """
 
-    def __init__(self, message: str, line: int, column: int) -> None:
-        super().__init__(message, f"line {line}, column {column}", code="unit")
-        self.line, self.column = line, column
+    def __init__(self, message: str, line: int, column: int, others: tuple[UnitError, ...] = ()) -> None:
+        hint = f"also {'; '.join(map(str, others))}" if others else ""
+        super().__init__(message, f"line {line}, column {column}", hint, code="unit")
+        self.line, self.column, self.others = line, column, others
+
+    @property
+    def all(self) -> tuple[UnitError, ...]:
+        """The error itself, then the others."""
+        return self, *self.others
 
 
 def refuse(node: ast.AST, message: str) -> NoReturn:

@@ -16,17 +16,19 @@ from manual.plan import SITE
 from manual.site import write
 
 HERE = Path(__file__).resolve().parent
+STRICT = ["-q", "-W", "--keep-going"]
 
 
 def main() -> int:
-    """Build the site in a folder beside its place, then put it there; return the exit code."""
+    """Build the site, then put it into its folder or the one that is given; return the exit code."""
+    site = Path(sys.argv[1]) if len(sys.argv) > 1 else SITE
     with tempfile.TemporaryDirectory() as made:
         source, built = Path(made, "source"), Path(made, "built")
         write(source)
-        code = build_main(["-q", "-W", "--keep-going", "-c", str(HERE), "-d", f"{made}/trees", str(source), str(built)])
+        code = build_main([*STRICT, "-c", str(HERE), "-d", f"{made}/trees", str(source), str(built)])
         if code == 0:
-            shutil.rmtree(SITE, ignore_errors=True)
-            shutil.move(built, SITE)
+            shutil.rmtree(site, ignore_errors=True)
+            shutil.move(built, site)
     return code
 
 

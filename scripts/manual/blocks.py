@@ -33,7 +33,9 @@ def pages() -> dict[str, str]:
     """Return the pages by their address: a list, one page for each family, and the errata."""
     cards = {family: catalog(family) for family in FAMILIES}
     first = [f"## [{TITLES[family]}]({family}.md)\n\n{_list(family, cards[family])}" for family in FAMILIES]
-    about = "A block is a plant, a sensor, a controller, a fault, a diagnoser. `combbench catalog` prints the same entries."
+    about = (
+        "A block is a plant, a sensor, a controller, a fault, a diagnoser. `combbench catalog` prints the same entries."
+    )
     written = {"reference/blocks/index": page("Blocks", READERS, [about, *first, menu(FAMILIES)])}
     for family in FAMILIES:
         parts = [part for card in cards[family] for part in _block(card)]
@@ -77,7 +79,9 @@ def _parameter(parameter: ParameterCard) -> tuple[str, ...]:
     low, high = (None if end is None else f"{end:g}" for end in (parameter.minimum, parameter.maximum))
     between = {(True, True): f"{low} to {high}", (True, False): f"from {low}", (False, True): f"to {high}"}
     limits = between.get((low is not None, high is not None), "")
-    allowed = ", ".join(map(code, parameter.choices)) or limits or ("" if parameter.type == "number" else parameter.type)
+    allowed = (
+        ", ".join(map(code, parameter.choices)) or limits or ("" if parameter.type == "number" else parameter.type)
+    )
     return code(parameter.name), default, allowed, shown(unit_text(parameter.unit)), shown(parameter.meaning)
 
 

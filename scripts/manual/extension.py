@@ -1,6 +1,6 @@
 """The part of Sphinx that the site needs: mathematics as MathML, and scripts and styles in files of their own.
 
-The server's content policy permits no script and no ``<style>`` element inside a page, and the theme writes one of each.
+The content policy of the server permits no script and no ``<style>`` inside a page, and the theme writes one of each.
 """
 
 from __future__ import annotations

@@ -40,14 +40,16 @@ def pages() -> dict[str, str]:
         rows.append((f"[{title}]({name}.md)", str(len(operations)), f"{shown(tag['description'])}."))
     about = (
         "Generated from the OpenAPI document, which is `web/openapi.json` and `/api/v1/openapi.json` of a server. "
-        "[The tutorial](../../tutorials/rest.md) begins with a token, [generated clients](../../how-to/generated-clients.md) "
-        "need no code of yours. A refusal has the shape of [Failure](#schema-Failure)."
+        "[The tutorial](../../tutorials/rest.md) begins with a token; "
+        "[generated clients](../../how-to/generated-clients.md) need no code of yours. A refusal has the shape of "
     )
     refused = _schema_names(document["components"]["responses"])
-    about = about.replace("[Failure](#schema-Failure)", " or ".join(f"[{name}](#schema-{name})" for name in refused))
+    about += " or ".join(f"[{name}](#schema-{name})" for name in refused) + "."
     rest = sorted(name for name in _all_from(refused, schemas) if name not in written)
     parts = [about, table(("group", "operations", "content"), rows), menu(map(_file, found))]
-    parts += ["## Schemas of refusals", *(part for name in rest for part in _schema(name, schemas[name]))] if rest else []
+    parts += (
+        ["## Schemas of refusals", *(part for name in rest for part in _schema(name, schemas[name]))] if rest else []
+    )
     return {"reference/rest/index": page("REST", READERS, parts), **found}
 
 

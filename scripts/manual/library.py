@@ -9,6 +9,10 @@ from scenarios.library import get, ids
 def pages() -> dict[str, str]:
     """Return the page by its address."""
     about = "`combbench run ID` runs a scenario, and the gallery of the page opens it."
-    rows = [(code(name), shown(head.title), shown(head.claim or ""), shown(head.source)) for name in ids() for head in [get(name).head]]
+    rows = [
+        (code(name), shown(head.title), shown(head.claim or ""), shown(head.source))
+        for name in ids()
+        for head in [get(name).head]
+    ]
     text = table(("id", "title", "claim", "source"), rows)
     return {"reference/library": page("Library of scenarios", "For people who look for an experiment.", [about, text])}

@@ -50,7 +50,9 @@ def _section(name: str, found: dict[str, str]) -> str:
     section = SECTIONS[name]
     below = [(address.removeprefix(f"{name}/"), found[address]) for address in listed(name)]
     lines = [f"- [{title_of(text)}]({page}.md){_readers(text)}" for page, text in below]
-    return "\n\n".join([f"# {section.title}", section.purpose, "\n".join(lines), menu(page for page, _ in below)]) + "\n"
+    return (
+        "\n\n".join([f"# {section.title}", section.purpose, "\n".join(lines), menu(page for page, _ in below)]) + "\n"
+    )
 
 
 def _readers(text: str) -> str:

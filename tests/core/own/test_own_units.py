@@ -24,7 +24,7 @@ from tests.core.own.texts import FIT, PI, ROOT, odd
 
 BASE = "ch3-mrac-mass-x10"
 COPIED = (
-    *("open_loop", "pid", "force_to_rebalance", "forced_drive", "open_loop_rate"),
+    *("open_loop", "pid", "forced_drive", "open_loop_rate"),
     *("constant", "prbs", "sine", "square", "step"),
     *("added_mass", "damping", "drive_gain", "sensor_bias", "sensor_dropout", "sensor_hum", "sensor_noise"),
     *("sensor_quantisation", "shock", "stiffness", "vacuum_loss"),
@@ -181,7 +181,7 @@ def examples() -> list[str]:
 
 
 def test_the_units_of_the_document_work() -> None:
-    pi, judge = examples()
+    pi, judge, *_ = examples()
     assert unit("pi", pi).family == "control"
     steps = with_unit("leaky_squares", judge, {"diagnosers.mine.kind": "leaky_squares"}, "ch5-seven-step")
     assert run(steps).summary()["metrics"]["diagnosis.mine.correct_fraction"] > 0.8
