@@ -70,7 +70,7 @@ class Declaration:
 
     @contextmanager
     def _apart(self, *names: str) -> Iterator[None]:
-        """Keep the error of a part, after which some names have no meaning, and go on behind it."""
+        """Keep the error of a part, and mark its names as broken."""
         try:
             yield
         except UnitError as error:

@@ -75,7 +75,7 @@ def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
 
 
 def _expressions(statement: ast.stmt) -> Iterator[ast.expr]:
-    """Yield the expressions that a statement computes itself, without those of statements inside it."""
+    """Yield the expressions that a statement computes itself, and none of the statements inside it."""
     parts = [*ast.iter_child_nodes(statement)]
     if isinstance(statement, ast.AnnAssign):
         parts.remove(statement.annotation)

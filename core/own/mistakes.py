@@ -26,7 +26,7 @@ class Follows(UnitError):
 
 
 class Mistakes:
-    """Collects errors while the check goes on."""
+    """Collects errors, so that the check reads a text to its end."""
 
     def __init__(self) -> None:
         self._found: dict[tuple[int, int], UnitError] = {}
@@ -44,7 +44,7 @@ class Mistakes:
 
     @contextmanager
     def apart(self) -> Iterator[None]:
-        """Keep the error of a part, and go on behind it."""
+        """Keep the error of a part; the next part is checked too."""
         try:
             yield
         except UnitError as error:
@@ -80,7 +80,7 @@ def bound(node: ast.AST) -> set[str]:
 
 
 def nearest(name: str, allowed: Iterable[str], elsewhere: Iterable[str] = ()) -> str:
-    """Return the way out of a wrong name: the nearest name, or those that exist; nothing where there is none.
+    """Return the way out of a wrong name: the nearest name, else a list of names; nothing without a list.
 
     Parameters
     ----------

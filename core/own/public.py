@@ -61,7 +61,7 @@ FIRST_OUTPUTS = {
     "supervise": ("request",),
     "faults": ("severity",),
 }
-"""Outputs of which a unit of a family must have one, for others read it."""
+"""Outputs that other blocks read; a unit of a family has at least one of its family."""
 
 
 def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:

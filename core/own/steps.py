@@ -48,7 +48,7 @@ class OwnSteps(OwnLoops):
     counted : type of Record, optional
         The record into which the framework writes the number of hypotheses.
     mistakes : Mistakes
-        Takes the errors of statements; the check goes on behind each.
+        Takes the errors of statements; the statements behind an error are checked too.
     """
 
     def __init__(self, names: dict[str, Any], counted: type[Record] | None, mistakes: Mistakes) -> None:
@@ -151,7 +151,7 @@ class OwnSteps(OwnLoops):
         return made, False
 
     def _spoil(self, node: ast.stmt) -> bool:
-        """Go on behind a statement with an error: the names that it binds are not known; say whether it returns."""
+        """Mark the names that a statement with an error binds as broken; say whether it returns."""
         for name in bound(node):
             self.kinds.setdefault(name, BROKEN)
         if any(isinstance(part, ast.Return) for part in ast.walk(node)):

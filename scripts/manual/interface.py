@@ -11,6 +11,8 @@ from manual.plan import ROOT
 
 DOCUMENT = ROOT / "web" / "openapi.json"
 READERS = "For people whose programs call the server."
+USUAL = "Successful Response"
+"""A description that says no more than its status."""
 METHODS = ("get", "put", "post", "patch", "delete")
 Json = dict[str, Any]
 
@@ -44,7 +46,7 @@ def pages() -> dict[str, str]:
         "[generated clients](../../how-to/generated-clients.md) need no code of yours. A refusal has the shape of "
     )
     refused = _schema_names(document["components"]["responses"])
-    about += " or ".join(f"[{name}](#schema-{name})" for name in refused) + "."
+    about += " or ".join(map(_link, refused)) + "."
     rest = sorted(name for name in _all_from(refused, schemas) if name not in written)
     parts = [about, table(("group", "operations", "content"), rows), menu(map(_file, found))]
     parts += (
@@ -68,7 +70,7 @@ def _operation(method: str, path: str, operation: Json) -> Iterator[str]:
     yield table(("parameter", "in", "type", "meaning"), rows)
     answers = [("body", media, kind(content.get("schema", {})), "") for media, content in _content(operation)]
     answers += [
-        (code(status), media, kind(content.get("schema", {})), shown(answer.get("description", "")))
+        (code(status), media, kind(content.get("schema", {})), shown(answer["description"].replace(USUAL, "")))
         for status, answer in operation["responses"].items()
         for media, content in (answer.get("content") or {"": {}}).items()
         if "$ref" not in answer
@@ -82,7 +84,7 @@ def _content(operation: Json) -> Any:
 
 def _schema(name: str, schema: Json) -> Iterator[str]:
     """Write a schema: its fields, or its kind."""
-    yield f"(schema-{name})=\n### {shown(name)}"
+    yield f"(schema-{name.lower()})=\n### {shown(name)}"
     yield shown(" ".join(schema.get("description", "").split()))
     required = schema.get("required", ())
     rows = [
@@ -90,6 +92,10 @@ def _schema(name: str, schema: Json) -> Iterator[str]:
         for field, one in schema.get("properties", {}).items()
     ]
     yield table(("field", "type", "required", "meaning"), rows) or f"{kind(schema)}."
+
+
+def _link(name: str) -> str:
+    return f"[{name}](#schema-{name.lower()})"  # anchors are in small letters
 
 
 def _meaning(schema: Json) -> str:
@@ -100,8 +106,7 @@ def _meaning(schema: Json) -> str:
 def kind(schema: Json) -> str:
     """Return the kind of a value in words, with links to schemas."""
     if "$ref" in schema:
-        name = schema["$ref"].rpartition("/")[2]
-        return f"[{name}](#schema-{name})"
+        return _link(schema["$ref"].rpartition("/")[2])
     for one in ("anyOf", "oneOf", "allOf"):
         if one in schema:
             return " or ".join(dict.fromkeys(map(kind, schema[one])))

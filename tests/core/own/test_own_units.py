@@ -158,7 +158,7 @@ def test_a_unit_cannot_change_or_come_while_the_board_runs() -> None:
         ({"pi": PI}, "units.pi"),
         ({"Pi!": {"source": PI}}, "units.'Pi!'"),
         ({"pi": {"source": PI, "family": "control"}}, "units.pi.family"),
-        ({"pi": {"source": "x = ("}}, "units.pi.source.line 2, column 1"),
+        ({"pi": {"source": "x = (1,\n"}}, "units.pi.source.line 1, column 5"),
     ],
 )
 def test_a_wrong_table_of_units_is_refused_by_name(units: Any, field: str) -> None:
