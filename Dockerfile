@@ -47,11 +47,20 @@ RUN .venv/bin/uv pip install --quiet --constraint requirements.lock hatchling \
  && .venv/bin/python -m pip uninstall --quiet --yes hatchling pathspec pluggy trove-classifiers uv pip setuptools \
  && /audit/bin/python scripts/audit.py python sbom --python .venv/bin/python
 
+# ---- the documents
+FROM packages AS documents
+ARG SSL_CERT_FILE
+ARG PIP_CERT
+RUN .venv/bin/uv pip install --quiet --constraint requirements.lock -r pyproject.toml --extra docs
+COPY . .
+RUN PYTHONPATH=scripts .venv/bin/python -m manual
+
 # ---- what runs
 FROM ${BASE}
 WORKDIR /app
 COPY --from=service /app /app
 COPY --from=page /app/web/dist web/dist
+COPY --from=documents /app/docs/site docs/site
 COPY --from=page /app/sbom sbom
 RUN install -d -m 700 -o 10001 -g 10001 /data
 ENV PATH=/app/.venv/bin:$PATH \

@@ -17,7 +17,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o -name testing -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed wheel image audit codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed wheel image docs audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels $(LOADED_STAMP)
@@ -66,11 +66,14 @@ class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py pages --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
 
-wheel: $(PAGE)  ## Build a wheel with the page, and machine code for x86-64-v2, x86-64-v3 and aarch64 Linux
+wheel: $(PAGE) docs  ## Build a wheel with the page, the documents, and machine code for x86-64-v2, x86-64-v3 and aarch64 Linux
 	@.venv/bin/uv build --wheel --no-build-isolation --quiet --out-dir dist
 
 image: ## Build the container image, start it, ask for its health and stop it
 	@scripts/image
+
+docs: $(PYTHON_STAMP)  ## Build the site of the documents into docs/site, which the server shows at /docs; a warning is an error
+	@PYTHONPATH=scripts .venv/bin/python -m manual
 
 audit: $(PYTHON_STAMP) $(NODE_STAMP) ## List all packages into sbom/, and ask the indices whether one is known to be weak
 	@.venv/bin/python scripts/audit.py python sbom
@@ -90,7 +93,7 @@ lock: $(PYTHON_STAMP)  ## Renew requirements.lock (ARGS=--upgrade for newer vers
 	  --custom-compile-command 'make lock' $(ARGS) --output-file requirements.lock pyproject.toml
 
 clean:  ## Remove everything that was set up or built; recorded data stays
-	@rm -rf .venv web/node_modules web/dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	@rm -rf .venv web/node_modules web/dist docs/site .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## Show this list

@@ -11,6 +11,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PAGE, KERNELS, PAGE_IN_WHEEL = "web/dist", "scenarios/built_kernels.zip", "server/page"
+DOCUMENTS, DOCUMENTS_IN_WHEEL = "docs/site", "server/site"
 PAGE_SOURCE = (
     "web/src",
     "web/public",
@@ -37,6 +38,10 @@ class BuildHook(BuildHookInterface[Any]):
             self._run("Building the page", *self._npm(), "run", "--silent", "build", "--", "--logLevel", "warn")
         self._run("Compiling the blocks", sys.executable, "-m", "scenarios.built_kernels")
         build_data["force_include"] |= {PAGE: PAGE_IN_WHEEL, KERNELS: KERNELS}
+        if Path(
+            self.root, DOCUMENTS, "index.html"
+        ).is_file():  # as `make docs` left it; Sphinx is no part of this build
+            build_data["force_include"][DOCUMENTS] = DOCUMENTS_IN_WHEEL
 
     def _run(self, doing: str, *command: str) -> None:
         """Run a command in the checkout, with its own program and its packages first; pipx would leave these out."""

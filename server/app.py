@@ -23,6 +23,7 @@ from server.api import (
     devices,
     diagnosers,
     document,
+    documents,
     driving,
     experiments,
     gallery,
@@ -159,7 +160,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.service, app.state.identity = service, identity
     errors.install(app)
     document.install(app)
-    for module in (*ROUTERS, health, joining, places):
+    for module in (*ROUTERS, health, joining, documents, places):
         app.router.routes += module.router.routes
     if importlib.util.find_spec("server.view3d") is not None:
         from server.api import view3d

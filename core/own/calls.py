@@ -11,12 +11,15 @@ from core.kernel import is_kernel
 from core.own.expressions import Checked, OwnExpressions, called
 from core.own.guarded import floored, signed
 from core.own.kinds import NUMBER, TRUTH, Count, NumberKind, RecordKind, signature
+from core.own.mistakes import BROKEN, follows, nearest
+from core.own.offered import MATHEMATICS, OFFERED
 from core.own.text import refuse
 from core.own.values import Mathematics
 from core.record import Record
 
 COST_OF_CALL = 30
 """Operations that a call of an elementary function counts as."""
+STEP_FUNCTIONS = ("abs", "min", "max", "math.sqrt", "math.copysign", "math.isfinite")
 
 
 class OwnCalls(OwnExpressions):
@@ -34,7 +37,7 @@ class OwnCalls(OwnExpressions):
         """Check a call; arguments go by their place."""
         name, function = self._function(node)
         if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
-            refuse(node, "a step passes arguments by their place")
+            refuse(node, "a step passes arguments by their place; leave out the names and stars")
         if isinstance(function, ast.FunctionDef):
             return self.own_call(node, function, [self.value(argument) for argument in node.args])
         if function is int:
@@ -44,9 +47,9 @@ class OwnCalls(OwnExpressions):
         try:
             taken, result = signature(function)
         except TypeError:
-            refuse(node, f"{name} is no function of steps")
+            refuse(node, f"{name} is no function of steps; it belongs into pack")
         if not is_kernel(function):
-            refuse(node, f"{name} is for pack, and no function of steps")
+            refuse(node, f"{name} is for pack, and no function of steps; pack its result into a field of p")
         if len(taken) != len(node.args):
             refuse(node, f"{name} takes {len(taken)} arguments and is given {len(node.args)}")
         self.count(node, COST_OF_CALL)
@@ -61,14 +64,26 @@ class OwnCalls(OwnExpressions):
                 return f"_{node.func.attr}", getattr(math, node.func.attr)
         if isinstance(node.func, ast.Name) and node.func.id not in self.kinds and node.func.id in self.names:
             function = self.names[node.func.id]
+            if function is BROKEN:
+                raise follows(node)
             if callable(function) or isinstance(function, ast.FunctionDef):
                 return node.func.id, function
-        return refuse(node, "is no function of steps")
+        return refuse(node, f"is no function of steps{self._other_function(node.func)}")
+
+    def _other_function(self, node: ast.expr) -> str:
+        """Return the way out of a function that is not known: the import that it needs, or the nearest name."""
+        name = node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+        if name in MATHEMATICS:
+            return f"; write import math, and math.{name}"
+        if home := next((home for home, names in OFFERED.items() if name in names), ""):
+            return f"; write from {home} import {name}, and {name}(...)"
+        known = [one for one, value in self.names.items() if is_kernel(value) or isinstance(value, ast.FunctionDef)]
+        return nearest(name, (*known, *STEP_FUNCTIONS))
 
     def _instruction(self, node: ast.Call, name: str, function: Any) -> Checked:
         least, most = {min: (2, 8), max: (2, 8), math.copysign: (2, 2)}.get(function, (1, 1))
         if not least <= len(node.args) <= most:
-            refuse(node, f"is given {len(node.args)} numbers")
+            refuse(node, f"is given {len(node.args)} numbers, and takes {least}" + (f" to {most}" * (most > least)))
         parts = [self.number(part) for part in node.args]
         if function is float:
             return NUMBER, parts[0]
@@ -94,5 +109,5 @@ class OwnCalls(OwnExpressions):
             return self.number(node)
         kind, made = self.value(node)
         if not isinstance(kind, RecordKind) or not issubclass(kind.record, taken):
-            refuse(node, f"must be a record {taken.__name__}")
+            refuse(node, f"must be a record {taken.__name__}; declare a field of that kind and give it")
         return made

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Literal, cast
 
 from pydantic import create_model
@@ -10,7 +12,8 @@ from pydantic.fields import FieldInfo
 
 from core.block import Block, BlockParams
 from core.own.evaluate import Evaluator
-from core.own.offered import BUILTINS, OFFERED, offered
+from core.own.mistakes import BROKEN, Mistakes, bound, follows, nearest
+from core.own.offered import BUILTINS, MATHEMATICS, OFFERED, offered
 from core.own.text import UnitError, refuse
 from core.own.values import Mathematics
 from core.ports import BlockPorts, Port
@@ -20,6 +23,9 @@ MOST_NUMBERS = 4096
 """Numbers of a record: the most memory of a step."""
 MOST_FIELDS = 200
 LONGEST_TEXT = 4000
+FRAMEWORK = ("array", "layout", "signals", "places", "declared")
+"""Names that tables have themselves."""
+KINDS = "a parameter is a float, int, bool, str or Literal, a field of a record a float, a Vector, or another record"
 TABLES = (Record, BlockParams, BlockPorts)
 INNER = {"Params": BlockParams, "Packed": Record, "State": Record, "Ports": BlockPorts}
 """Tables within the class of a unit, and their bases where the base of the unit has none."""
@@ -42,10 +48,12 @@ class Declaration:
         Its other attributes, such as ``title``.
     methods : dict
         Its methods, as trees.
+    broken : set of str
+        Names of the tables in ``inner`` that have errors, and are missing there.
     """
 
-    def __init__(self, tree: ast.Module, module: str) -> None:
-        self._module = module
+    def __init__(self, tree: ast.Module, module: str, mistakes: Mistakes) -> None:
+        self._module, self._mistakes = module, mistakes
         self.names: dict[str, Any] = {**BUILTINS}
         self._evaluator = Evaluator(self.names)
         self.node: ast.ClassDef | None = None
@@ -53,10 +61,22 @@ class Declaration:
         self.inner: dict[str, Any] = {}
         self.values: dict[str, Any] = {}
         self.methods: dict[str, ast.FunctionDef] = {}
+        self.broken: set[str] = set()
         for node in tree.body:
-            self._top(node)
-        if self.node is None:
+            with self._apart(*bound(node)):
+                self._top(node)
+        if self.node is None and not mistakes:
             raise UnitError("declares no unit: a class on Block, or on another base of the library", 1, 1)
+
+    @contextmanager
+    def _apart(self, *names: str) -> Iterator[None]:
+        """Keep the error of a part, and mark its names as broken."""
+        try:
+            yield
+        except UnitError as error:
+            self._mistakes.add(error)
+            for name in names:
+                self.names.setdefault(name, BROKEN)
 
     def _top(self, node: ast.stmt) -> None:
         """Read one statement of the file."""
@@ -84,17 +104,19 @@ class Declaration:
         elif isinstance(node, ast.ClassDef):
             self._class(node)
         elif not _is_text(node):
-            refuse(node, f"a unit has no statement {type(node).__name__} outside its class")
+            kind = type(node).__name__
+            refuse(node, f"a unit has no statement {kind} outside its class: it has imports, constants and functions")
 
     def _import(self, node: ast.ImportFrom) -> None:
         module = "." * node.level + (node.module or "")
         for alias in node.names:
-            if alias.name not in OFFERED.get(module, ()):
-                refuse(node, f"{alias.name} cannot be imported from {module}; docs/own-units.md lists what can")
-            if module != "__future__":
-                name = alias.asname or alias.name
-                self._new(node, name)
-                self.names[name] = offered(module, alias.name)
+            name = alias.asname or alias.name
+            with self._apart(name):
+                if alias.name not in OFFERED.get(module, ()):
+                    refuse(alias, f"{alias.name} cannot be imported from {module}{_instead(module, alias.name)}")
+                if module != "__future__":
+                    self._new(node, name)
+                    self.names[name] = offered(module, alias.name)
 
     def _new(self, node: ast.AST, name: str) -> None:
         """Refuse a name that means something already."""
@@ -132,7 +154,7 @@ class Declaration:
         for base in node.bases:
             kind = self._type(base)
             if not isinstance(kind, type) or not issubclass(kind, (*TABLES, Block)):
-                refuse(base, "is no base of a unit, its parameters, records or ports")
+                refuse(base, "is no base of a unit, its parameters, records or ports, such as Block or Record")
             found.append(kind)
         return tuple(found)
 
@@ -140,24 +162,31 @@ class Declaration:
         """Read the class of the unit."""
         outer = dict(self.names)
         for part in node.body:
-            if isinstance(part, ast.ClassDef):
-                if part.name in self.inner:
-                    refuse(part, f"{part.name} is declared already")
-                made = self._table(part, self._bases(part))
-                self._check_inner(part, made)
-                self.inner[part.name] = self.names[part.name] = made
-            elif isinstance(part, ast.FunctionDef):
-                if part.name in self.methods:
-                    refuse(part, f"{part.name} is declared already")
-                self.methods[part.name] = part
-            elif isinstance(part, ast.Assign | ast.AnnAssign) and part.value is not None:
-                for target in part.targets if isinstance(part, ast.Assign) else [part.target]:
-                    self._value(target, part.value)
-            elif not _is_text(part) and not isinstance(part, ast.Pass):
-                refuse(part, f"a unit has no statement {type(part).__name__} in its class")
+            with self._apart(*(bound(part) if isinstance(part, ast.ClassDef) else ())):
+                self._part(part)
         self.values["__doc__"] = _text(node)
+        self.broken = {name for name in INNER if self.names.get(name) is BROKEN}
         self.names.clear()
         self.names.update(outer)
+
+    def _part(self, part: ast.stmt) -> None:
+        """Read one statement of the class of the unit."""
+        if isinstance(part, ast.ClassDef):
+            if part.name in self.inner:
+                refuse(part, f"{part.name} is declared already; leave one of them out")
+            made = self._table(part, self._bases(part))
+            self._check_inner(part, made)
+            self.inner[part.name] = self.names[part.name] = made
+        elif isinstance(part, ast.FunctionDef):
+            if part.name in self.methods:
+                refuse(part, f"{part.name} is declared already; leave one of them out")
+            self.methods[part.name] = part
+        elif isinstance(part, ast.Assign | ast.AnnAssign) and part.value is not None:
+            for target in part.targets if isinstance(part, ast.Assign) else [part.target]:
+                self._value(target, part.value)
+        elif not _is_text(part) and not isinstance(part, ast.Pass):
+            kind = type(part).__name__
+            refuse(part, f"a unit has no statement {kind} in its class: it has attributes, tables and methods")
 
     def _check_inner(self, node: ast.ClassDef, made: type[Any]) -> None:
         """Refuse a table that is unknown to the framework, or that lacks a field that the base of the unit needs."""
@@ -176,27 +205,24 @@ class Declaration:
             pairs = [(target, value)]
         for one, own in pairs:
             if not isinstance(one, ast.Name) or one.id.startswith("_"):
-                refuse(one, "is no attribute of a unit")
+                refuse(one, "is no attribute of a unit; it is a name that does not begin with _")
+            if one.id in INNER:
+                refuse(one, f"{one.id} is a class; write class {one.id}({ast.unparse(node)}): and a docstring")
             self.values[one.id] = own
 
     def _table(self, node: ast.ClassDef, bases: tuple[type[Any], ...]) -> type[Any]:
         """Read a class of parameters, of a record or of ports."""
         hints: dict[str, Any] = {}
         values: dict[str, Any] = {}
+        is_broken = False
         for part in node.body:
-            if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
-                name = part.target.id
-                if (
-                    name.startswith("_")
-                    or name in hints
-                    or name in ("array", "layout", "signals", "places", "declared")
-                ):
-                    refuse(part, f"{name} cannot be the name of a field")
-                hints[name] = self._type(part.annotation)
-                if part.value is not None:
-                    values[name] = self._evaluator.constant(part.value)
-            elif not _is_text(part) and not isinstance(part, ast.Pass):
-                refuse(part, "declares fields only: name: kind = ...")
+            try:
+                self._row(part, hints, values)
+            except UnitError as error:
+                self._mistakes.add(error)
+                is_broken = True
+        if is_broken:
+            raise follows(node)
         if len(hints) > MOST_FIELDS:
             refuse(node, f"has more than {MOST_FIELDS} fields")
         try:
@@ -204,6 +230,19 @@ class Declaration:
         except (TypeError, ValueError, AttributeError, NameError) as error:
             return refuse(node, f"cannot be declared: {error}")
         return made
+
+    def _row(self, part: ast.stmt, hints: dict[str, Any], values: dict[str, Any]) -> None:
+        """Read a field of a table."""
+        if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
+            name = part.target.id
+            if name.startswith("_") or name in hints or name in FRAMEWORK:
+                why = "is declared above" if name in hints else "is taken"
+                refuse(part, f"{name} cannot be the name of a field: it {why}; choose another one, without _ first")
+            hints[name] = self._type(part.annotation)
+            if part.value is not None:
+                values[name] = self._evaluator.constant(part.value)
+        elif not _is_text(part) and not isinstance(part, ast.Pass):
+            refuse(part, "declares fields only: name: kind = ...")
 
     def _made(self, node: ast.ClassDef, bases: tuple[type[Any], ...], hints: Any, values: Any) -> type[Any]:
         space = {"__module__": self._module, "__qualname__": node.name, "__doc__": _text(node)}
@@ -234,6 +273,8 @@ class Declaration:
         if isinstance(node, ast.Constant) and node.value is None:
             return None
         if isinstance(node, ast.Name) and node.id in self.names:
+            if self.names[node.id] is BROKEN:
+                raise follows(node)
             return self.names[node.id]
         if isinstance(node, ast.Attribute):
             owner = self._type(node.value)
@@ -249,7 +290,7 @@ class Declaration:
                 return left | None
         if isinstance(node, ast.Subscript):
             return self._generic(node)
-        return refuse(node, "is no kind of a field")
+        return refuse(node, f"is no kind of a field; {KINDS}")
 
     def _generic(self, node: ast.Subscript) -> Any:
         kind = self._type(node.value)
@@ -262,7 +303,19 @@ class Declaration:
             )
             if len(texts) == len(words):
                 return Literal[texts]
-        return refuse(node, "is no kind of a field")
+        return refuse(node, f"is no kind of a field; {KINDS}")
+
+
+def _instead(module: str, name: str) -> str:
+    """Return the way out of an import that is not permitted."""
+    homes = [f"write from {home} import {name}" for home, names in OFFERED.items() if name in names]
+    if name in MATHEMATICS:
+        homes.append(f"write import math, and math.{name}")
+    if homes:
+        return f"; {homes[0]}"
+    if module in OFFERED:
+        return nearest(name, OFFERED[module])
+    return "; a unit imports names of the library alone, and docs/own-units.md lists them"
 
 
 def _check_parameters(base: type[BlockParams], hints: dict[str, Any]) -> None:

@@ -17,6 +17,7 @@ from core.block import Block, BlockParams, Context, Oscillator
 from core.errors import InputError
 from core.kernel import is_kernel
 from core.own.kinds import NumberKind, signature
+from core.own.mistakes import BROKEN, follows, nearest
 from core.own.offered import MATHEMATICS, PYTHON
 from core.own.text import refuse
 from core.own.values import (
@@ -97,16 +98,32 @@ class Evaluator:
                 self._store(node.target, self._binary(node, node.op, before, self.value(node.value, local)), local)
             elif isinstance(node, ast.Expr):
                 self.value(node.value, local)
-            elif not isinstance(node, ast.Pass):
-                refuse(node, f"a statement {type(node).__name__} cannot stand here")
+            else:
+                self.check_statement(node)
         return False, None
+
+    @staticmethod
+    def check_statement(node: ast.stmt) -> None:
+        """Refuse a statement that no method has."""
+        allowed = ast.Return | ast.If | ast.For | ast.Assign | ast.AugAssign | ast.Expr | ast.Pass
+        if isinstance(node, ast.For) and node.orelse:
+            refuse(node, "a loop has no else; write the statements after it")
+        if not (isinstance(node, allowed) or (isinstance(node, ast.AnnAssign) and node.value is not None)):
+            name = type(node).__name__
+            refuse(node, f"a statement {name} cannot stand here; a method has assignments, if, for and return")
+
+    @classmethod
+    def check_expression(cls, node: ast.expr) -> None:
+        """Refuse an expression that no method has."""
+        if not hasattr(cls, f"_{type(node).__name__.lower()}"):
+            name = type(node).__name__
+            refuse(node, f"an expression {name} cannot stand here; a method has numbers, texts, lists and calls")
 
     def value(self, node: ast.expr, local: dict[str, Any]) -> Any:
         """Return the value of an expression."""
         self._count(node)
-        method = getattr(self, f"_{type(node).__name__.lower()}", None)
-        if method is None:
-            refuse(node, f"an expression {type(node).__name__} cannot stand here")
+        self.check_expression(node)
+        method = getattr(self, f"_{type(node).__name__.lower()}")
         try:
             return method(node, local)
         except InputError:
@@ -115,9 +132,12 @@ class Evaluator:
             refuse(node, f"cannot be worked out: {error}")
 
     def _count(self, node: ast.AST, operations: int = 1) -> None:
+        was_spent = self._left < 0
         self._left -= operations
+        if was_spent:
+            raise follows(node)
         if self._left < 0:
-            refuse(node, f"takes more than {MOST_OPERATIONS} operations")
+            refuse(node, f"takes more than {MOST_OPERATIONS} operations; shorten its lists and loops")
 
     def _weigh(self, node: ast.AST, *values: Any) -> None:
         """Count the items of lists, also of lists in lists: a list may be in another many times."""
@@ -140,9 +160,11 @@ class Evaluator:
     def _name(self, node: ast.Name, local: dict[str, Any]) -> Any:
         if node.id in local:
             return local[node.id]
+        if (known := self.names.get(node.id)) is BROKEN:
+            raise follows(node)
         if node.id in self.names:
-            return self.names[node.id]
-        return refuse(node, f"{node.id} is not declared")
+            return known
+        return refuse(node, f"{node.id} is not declared{nearest(node.id, (*local, *self.names))}")
 
     def _attribute(self, node: ast.Attribute, local: dict[str, Any]) -> Any:
         owner, name = self.value(node.value, local), node.attr
@@ -165,7 +187,7 @@ class Evaluator:
             fact = getattr(owner, name)
             if fact is None or isinstance(fact, int | float | str | tuple | Oscillator | BlockParams):
                 return fact
-        return refuse(node, f"has no {name} that a unit may read")
+        return refuse(node, f"has no {name} that a unit may read{nearest(name, _readable(owner))}")
 
     def _field(self, node: ast.AST, owner: Record, name: str) -> Field | None:
         """Return a field of a record, or nothing."""
@@ -178,10 +200,19 @@ class Evaluator:
         return owner[index]
 
     def _tuple(self, node: ast.Tuple, local: dict[str, Any]) -> Any:
-        return tuple(self.value(part, local) for part in node.elts)
+        return tuple(self._list(node, local))
 
-    def _list(self, node: ast.List, local: dict[str, Any]) -> Any:
-        return [self.value(part, local) for part in node.elts]
+    def _list(self, node: ast.List | ast.Tuple, local: dict[str, Any]) -> list[Any]:
+        found: list[Any] = []
+        for part in node.elts:
+            if isinstance(part, ast.Starred):
+                found += self._items(self.value(part.value, local), part)
+            else:
+                found.append(self.value(part, local))
+        return found
+
+    def _starred(self, node: ast.Starred, local: dict[str, Any]) -> Any:
+        refuse(node, "a star stands in a list or a tuple alone, and never in a call")
 
     def _listcomp(self, node: ast.ListComp | ast.GeneratorExp, local: dict[str, Any]) -> Any:
         if len(node.generators) != 1 or node.generators[0].is_async:
@@ -341,7 +372,8 @@ class Evaluator:
             owner = self.value(target.value, local)
             field = self._field(target, owner, target.attr) if isinstance(owner, Record) else None
             if field is None:
-                refuse(target, f"has no {target.attr} that a unit may write")
+                names = [one.name for one in owner.layout.fields] if isinstance(owner, Record) else ()
+                refuse(target, f"has no {target.attr} that a unit may write{nearest(target.attr, names)}")
             if field.kind not in (SCALAR, RECORD) or isinstance(value, Record) != (field.kind == RECORD):
                 refuse(target, "is given something of another kind")
             self._weigh(target, value)
@@ -360,3 +392,16 @@ class Evaluator:
             refuse(node, "is no vector and no list")
         if not isinstance(index, int) or not 0 <= index < len(owner):
             refuse(node, f"has no item {index!r}; there are {len(owner)}, from 0")
+
+
+def _readable(owner: Any) -> list[str]:
+    """Return the names that a unit may read of a value, for an error that lists them."""
+    if isinstance(owner, Mathematics):
+        return [*MATHEMATICS]
+    if isinstance(owner, Own):
+        return ["Packed", "State"]
+    if isinstance(owner, Record):
+        return [field.name for field in owner.layout.fields]
+    if isinstance(owner, BlockParams):
+        return [*type(owner).model_fields]
+    return sorted(public(cast(Any, type(owner)))) if isinstance(owner, Context | Oscillator) else []

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import math
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -18,22 +19,33 @@ from core.own.kinds import (
     TRUTH,
     Count,
     Kind,
+    Nothing,
     NumberKind,
     Numbers,
     RecordKind,
     RecordsKind,
+    Several,
     Signals,
     Truth,
     Whole,
+    names_of,
     of_field,
     of_port,
 )
+from core.own.mistakes import BROKEN, Broken, follows, nearest
 from core.own.text import refuse
 from core.own.values import MOST_INTEGER, Mathematics
 
 Checked = tuple[Kind, ast.expr]
 COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
 ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div)
+OTHER_WAYS: dict[type[ast.expr], str] = {
+    **dict.fromkeys((ast.List, ast.Tuple, ast.Set, ast.Dict), "; keep several numbers in a Vector of State or Packed"),
+    **dict.fromkeys((ast.ListComp, ast.GeneratorExp), "; write a loop, and add up in a name"),
+    **dict.fromkeys((ast.Lambda,), "; write a function above the class, marked @kernel"),
+    **dict.fromkeys((ast.JoinedStr,), "; a text is for titles and refusals"),
+}
+"""Ways out of expressions that a step does not have."""
 ITEM, PUT = "_item", "_put"
 """Names of the functions that read and write a vector at an index from data."""
 
@@ -57,6 +69,8 @@ class OwnExpressions:
         Kinds of the names that have a value here.
     used : dict
         Functions of the library that the code names.
+    times : Counter
+        How often each name of the function is assigned to, the counters of loops left out.
     cost : int
         Most operations that the code so far takes.
     """
@@ -64,6 +78,7 @@ class OwnExpressions:
     def __init__(self, names: dict[str, Any], used: dict[str, Any]) -> None:
         self.names, self.used = names, used
         self.kinds: dict[str, Kind] = {}
+        self.times: Counter[str] = Counter()
         self.cost = 0
         self.factor = 1
 
@@ -90,7 +105,7 @@ class OwnExpressions:
             return called("float", made)
         if isinstance(kind, Count):
             return called("float", made)
-        return refuse(node, "is no number" + (", but a condition" if isinstance(kind, Truth) else ""))
+        return refuse(node, f"is no number{_instead(kind)}")
 
     def truth(self, node: ast.expr) -> ast.expr:
         """Check an expression that is a condition."""
@@ -115,7 +130,8 @@ class OwnExpressions:
         check = checks.get(type(node))
         if check is None:
             name = type(node).__name__
-            refuse(node, f"a step has no expression {name}: it has numbers, names, arithmetic, comparisons and calls")
+            text = f"a step has no expression {name}: it has numbers, names, arithmetic, comparisons and calls"
+            refuse(node, text + OTHER_WAYS.get(type(node), ""))
         return check(node)
 
     def _constant(self, node: ast.Constant) -> Checked:
@@ -126,20 +142,32 @@ class OwnExpressions:
             return NUMBER, ast.Constant(value)
         if isinstance(value, int) and abs(value) <= MOST_INTEGER:
             return Whole(value, value), ast.Constant(value)
-        return refuse(node, "is no number that a step can have")
+        return refuse(node, "is no number that a step can have; a text or a list stays in pack")
 
     def _name(self, node: ast.Name) -> Checked:
-        if node.id in self.kinds:
-            return self.kinds[node.id], named(node.id)
+        if (kind := self.kinds.get(node.id)) is not None and not isinstance(kind, Broken):
+            return kind, named(node.id)
         value = self.names.get(node.id)
+        if kind is not None or value is BROKEN:
+            raise follows(node)
         if isinstance(value, bool) or (not isinstance(value, int | float)):
-            return refuse(node, f"{node.id} has no value here")
+            return refuse(node, f"{node.id} has no value here{self._without_value(node.id)}")
         if isinstance(value, int):
             return Whole(value, value), ast.Constant(value)
         if not math.isfinite(value):
             self.used["_inf"] = math.inf
             return NUMBER, named("_inf") if value > 0 else ast.UnaryOp(ast.USub(), named("_inf"))
         return NUMBER, ast.Constant(value)
+
+    def _without_value(self, name: str) -> str:
+        """Return the way out for a name without a value: the reason, or the nearest name."""
+        if name in self.names:
+            return "; a function is called, and a tuple read at a constant index"
+        if self.times[name]:
+            return "; assign it before this line, on every way to it"
+        numbers = (known for known, value in self.names.items() if isinstance(value, int | float))
+        fields = (f"{owner}.{field}" for owner, kind in self.kinds.items() for field in names_of(kind))
+        return nearest(name, (*self.kinds, *numbers), fields)
 
     def member(self, node: ast.Attribute) -> tuple[Kind, bool, ast.expr]:
         """Return the kind of a field or port, whether it may be written, and its owner written anew."""
@@ -154,7 +182,7 @@ class OwnExpressions:
         elif isinstance(kind, RecordKind):
             found = of_field(kind, node.attr)
         if found is None:
-            refuse(node, f"has no {node.attr}")
+            refuse(node, f"has no {node.attr}{nearest(node.attr, names_of(kind))}")
         return (*found, made)
 
     def _attribute(self, node: ast.Attribute) -> Checked:
@@ -170,7 +198,7 @@ class OwnExpressions:
         """Return the item of an index, the vector, both written anew, and whether the item is proved to exist."""
         kind, owner = self.value(node.value)
         if not isinstance(kind, Numbers | RecordsKind):
-            refuse(node, "is no vector")
+            refuse(node, "is no vector; declare it as a Vector, or leave the index out")
         is_known = True
         if isinstance(kind, Numbers) and is_int_of_data(node.slice):
             index = self.number(node.slice.args[0])  # type: ignore[attr-defined]
@@ -213,7 +241,7 @@ class OwnExpressions:
         if isinstance(left, Whole) and isinstance(right, Whole) and not isinstance(node.op, ast.Div):
             return self._whole(node, left, right, one, other)
         if not isinstance(node.op, ARITHMETIC):
-            refuse(node, "a step has only + - * / of numbers; floor and the like are functions")
+            refuse(node, "a step has only + - * / of numbers; write products for a power, floor(...) for a quotient")
         return NUMBER, ast.BinOp(self.as_number(node.left, first), node.op, self.as_number(node.right, second))
 
     def _whole(self, node: ast.BinOp, left: Whole, right: Whole, one: ast.expr, other: ast.expr) -> Checked:
@@ -233,7 +261,7 @@ class OwnExpressions:
         else:
             refuse(node, "whole numbers have + - *, and // and % by a constant above 0")
         if max(map(abs, results)) > MOST_INTEGER:
-            refuse(node, "is a whole number beyond 2^53")
+            refuse(node, "is a whole number beyond 2^53; write it as a float, such as 1e16")
         if left.low == left.high and right.low == right.high:
             return Whole(results[0], results[0]), ast.Constant(results[0])
         stays = isinstance(node.op, ast.Sub) and left.counts and right.low >= 0 and min(results) >= 0
@@ -243,7 +271,7 @@ class OwnExpressions:
         if isinstance(node.op, ast.Not):
             return TRUTH, ast.UnaryOp(node.op, self.truth(node.operand))
         if isinstance(node.op, ast.Invert):
-            refuse(node, "a step has no ~")
+            refuse(node, "a step has no ~; write not")
         checked = self.value(node.operand)
         kind = checked[0]
         if isinstance(kind, Whole) and kind.low == kind.high:
@@ -254,7 +282,7 @@ class OwnExpressions:
 
     def _compare(self, node: ast.Compare) -> Checked:
         if any(not isinstance(sign, COMPARED) for sign in node.ops):
-            refuse(node, "a step has only < <= > >= == !=")
+            refuse(node, "a step has only < <= > >= == !=; `is` and `in` compare objects, and a step has numbers")
         parts = [self.number(part) for part in (node.left, *node.comparators)]
         return TRUTH, ast.Compare(parts[0], node.ops, parts[1:])
 
@@ -263,6 +291,19 @@ class OwnExpressions:
 
     def _ifexp(self, node: ast.IfExp) -> Checked:
         return NUMBER, ast.IfExp(self.truth(node.test), self.number(node.body), self.number(node.orelse))
+
+
+def _instead(kind: Kind) -> str:
+    """Return the way from a value to a number."""
+    if isinstance(kind, Truth):
+        return ", but a condition; write 1.0 if ... else 0.0"
+    if isinstance(kind, Numbers | RecordsKind):
+        return ", but a vector; read an item, such as [0]"
+    if isinstance(kind, RecordKind | Signals):
+        return f"; read a field, such as .{names_of(kind)[0]}" if names_of(kind) else ""
+    if isinstance(kind, Several):
+        return f", but {kind.count} numbers; assign them to {kind.count} names"
+    return "; the function returns nothing" if isinstance(kind, Nothing) else ""
 
 
 def is_int_of_data(node: ast.expr) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, get_args, get_origin, get_type_hints
 
+from core.own.mistakes import Broken
 from core.ports import INPUT, BlockPorts
 from core.record import RECORD, RECORDS, SCALAR, VECTOR, Field, Record, record_of
 
@@ -96,8 +97,20 @@ class Nothing:
     """The kind of a function that returns nothing."""
 
 
-Kind = NumberKind | Truth | Whole | Count | Numbers | RecordKind | RecordsKind | Signals | Several | Nothing
+Kind = NumberKind | Truth | Whole | Count | Numbers | RecordKind | RecordsKind | Signals | Several | Nothing | Broken
 NUMBER, TRUTH, NOTHING = NumberKind(), Truth(), Nothing()
+
+
+def is_alike(one: Kind, other: Kind) -> bool:
+    """Say whether two kinds are the same, as far as both are known."""
+    return one == other or isinstance(one, Broken) or isinstance(other, Broken)
+
+
+def names_of(kind: Kind) -> list[str]:
+    """Return the fields of a record, or the ports of the unit with tick and time."""
+    if isinstance(kind, RecordKind):
+        return [field.name for field in kind.record.layout.fields]
+    return [*(port.name for port in kind.ports.declared), "tick", "time_ms"] if isinstance(kind, Signals) else []
 
 
 def of_field(owner: RecordKind, name: str) -> tuple[Kind, bool] | None:

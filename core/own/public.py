@@ -10,6 +10,7 @@ import re
 
 from core.control.two_axis import DrivePorts, RatePorts
 from core.loop.effects import Effects
+from core.own.mistakes import nearest
 from core.own.text import refuse
 from core.ports import INPUT, BlockPorts, Port
 
@@ -51,15 +52,17 @@ PUBLIC: dict[str, tuple[str, ...]] = {
 }
 """Sources of the inputs of each family; what ends in ``?`` is not on every bench, and must be read so."""
 
+ALARMS = ("alarm",)
+"""Outputs by which a diagnoser without hypotheses is known; the board measures its delays and false alarms."""
 FIRST_OUTPUTS = {
     "control": ("voltage",),
     "sense": ("displacement",),
-    "diagnose": ("probability",),
+    "diagnose": ("probability", *ALARMS),
     "identify": ("estimate",),
     "supervise": ("request",),
     "faults": ("severity",),
 }
-"""Outputs that a unit of a family must have, for others read them."""
+"""Outputs that other blocks read; a unit of a family has at least one of its family."""
 
 
 def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
@@ -68,13 +71,12 @@ def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
     sources = PUBLIC[f"{family}, axes" if slot else family]
     for port in ports.declared:
         if port.kind == INPUT and not {port.source, port.source.removesuffix("?")} & {*sources}:
-            refuse(
-                node, f"{port.name} reads {port.source}, which a unit of {family} may not; docs/own-units.md lists what"
-            )
+            text = f"{port.name} reads {port.source}, which a unit of {family} may not"
+            refuse(node, text + (nearest(port.source, sources) or "; it reads no signal"))
         if port.each not in ("", "hypotheses") or (port.each and family != "diagnose"):
             refuse(node, f"{port.name} has a number for each {port.each}; a diagnoser may say hypotheses")
         if port.vector and not port.labels and not port.each:
-            refuse(node, f"{port.name} is a vector without labels")
+            refuse(node, f"{port.name} is a vector without labels; name its items by labels=(...)")
         if bool(port.labels or port.each) != port.vector:
             refuse(node, f"{port.name} has labels and is no Vector")
         if len(port.labels) > MOST_LABELS or any(not IDENTIFIER.fullmatch(label) for label in port.labels):
@@ -88,9 +90,9 @@ def check_ports(node: ast.AST, family: str, ports: type[BlockPorts]) -> None:
         for port in getattr(base, "declared", ()):
             if _shape(names[port.name]) != _shape(port):
                 refuse(node, f"{port.name} is another port in {base.__qualname__}, which others read")
-    for name in () if slot else FIRST_OUTPUTS.get(family, ()):
-        if name not in names:
-            refuse(node, f"has no output {name}, which others read")
+    wanted = () if slot else FIRST_OUTPUTS.get(family, ())
+    if wanted and not any(name in names and names[name].kind != INPUT for name in wanted):
+        refuse(node, f"has no output {' or '.join(wanted)}, which others read; declare it in Ports by output(...)")
 
 
 def _shape(port: Port) -> tuple[object, ...]:

@@ -25,9 +25,11 @@ from core.own.kinds import (
     Several,
     Truth,
     Whole,
+    is_alike,
 )
 from core.own.loops import OwnLoops
-from core.own.text import refuse
+from core.own.mistakes import BROKEN, Broken, Mistakes, bound, follows
+from core.own.text import UnitError, refuse
 from core.own.values import as_read
 from core.record import Record
 
@@ -45,23 +47,33 @@ class OwnSteps(OwnLoops):
         Meanings of names outside functions.
     counted : type of Record, optional
         The record into which the framework writes the number of hypotheses.
+    mistakes : Mistakes
+        Takes the errors of statements; the statements behind an error are checked too.
     """
 
-    def __init__(self, names: dict[str, Any], counted: type[Record] | None) -> None:
+    def __init__(self, names: dict[str, Any], counted: type[Record] | None, mistakes: Mistakes) -> None:
         super().__init__(names, {})
-        self.counted = counted
+        self.counted, self._mistakes = counted, mistakes
         self.written: list[ast.FunctionDef] = []
         self.last_cost = 0
-        self.times: Counter[str] = Counter()
         self._returned: Kind | None = None
         self._known: dict[tuple[str, tuple[Kind, ...]], tuple[str, Kind, int]] = {}
         self._open: list[str] = []
+        self._is_too_long = False
+
+    @property
+    def called(self) -> set[str]:
+        """Functions of the unit that a step calls."""
+        return {name for name, _ in self._known}
 
     def count(self, node: ast.AST, operations: int = 1) -> None:
         """Count operations, as often as the loops around them go."""
         self.cost += operations * self.factor
         if self.cost > MOST_OPERATIONS:
-            refuse(node, f"takes more than {MOST_OPERATIONS} operations a sample")
+            if self._is_too_long:
+                raise follows(node)
+            self._is_too_long = True
+            refuse(node, f"takes more than {MOST_OPERATIONS} operations a sample; shorten the loops around it")
 
     def function(self, node: ast.FunctionDef, kinds: Sequence[Kind], name: str) -> Kind:
         """Check a function with arguments of these kinds, write it anew under a name, return its kind."""
@@ -71,21 +83,28 @@ class OwnSteps(OwnLoops):
         if len(arguments.args) != len(kinds):
             refuse(node, f"takes {len(arguments.args)} arguments and is given {len(kinds)}")
         outer = self.kinds, self.cost, self.factor, self.times, self._returned
-        taken = [argument.arg for argument in arguments.args]
-        for argument in arguments.args:
+        try:
+            return self._function_of(node, kinds, name)
+        finally:
+            self.kinds, cost, self.factor, self.times, self._returned = outer
+            self.last_cost, self.cost = self.cost - cost, cost
+
+    def _function_of(self, node: ast.FunctionDef, kinds: Sequence[Kind], name: str) -> Kind:
+        """Check a function with a state of its own."""
+        taken = [argument.arg for argument in node.args.args]
+        for argument in node.args.args:
             self.check_name(argument, argument.arg)
         self.kinds, self.factor = dict(zip(taken, kinds, strict=True)), 1
         self.times, self._returned = _assigned(node), None
-        if any(self.times[name] and not isinstance(self.kinds[name], NumberKind | Truth) for name in taken):
-            refuse(node, "assigns to an argument that is no number")
+        simple = NumberKind | Truth | Broken
+        if any(self.times[name] and not isinstance(self.kinds[name], simple) for name in taken):
+            refuse(node, "assigns to an argument that is no number; assign to a name of its own")
         body, ends = self.body(node.body)
         result = self._returned or NOTHING
-        if result != NOTHING and not ends:
-            refuse(node, "returns a value on some ways through it, and on others nothing")
+        if not is_alike(result, NOTHING) and not ends:
+            refuse(node, "returns a value on some ways through it, and on others nothing; end it with a return")
         made = ast.FunctionDef(name, _arguments(taken), body or [ast.Pass()], [])
         self.written.append(made)
-        self.kinds, cost, self.factor, self.times, self._returned = outer
-        self.last_cost, self.cost = self.cost - cost, cost
         return result
 
     def own_call(self, node: ast.Call, function: ast.FunctionDef, arguments: Sequence[Checked]) -> Checked:
@@ -97,41 +116,52 @@ class OwnSteps(OwnLoops):
             parts.append(self.as_number(argument, (kind, made)) if is_number else made)
         key = function.name, tuple(kinds)
         if function.name in self._open:
-            refuse(node, f"{function.name} calls itself")
+            refuse(node, f"{function.name} calls itself; write a loop over range(...)")
         if key not in self._known:
             if len(self._known) >= MOST_FUNCTIONS:
                 refuse(node, f"there are more than {MOST_FUNCTIONS} functions")
             name = f"_{function.name}_{len(self._known)}"  # no name of a unit's own begins so
             self._open.append(function.name)
-            result = self.function(function, kinds, name)
-            self._open.pop()
+            self._known[key] = name, BROKEN, 0  # unless its check comes to its end
+            try:
+                result = self.function(function, kinds, name)
+            finally:
+                self._open.pop()
             self._known[key] = name, result, self.last_cost
         name, result, cost = self._known[key]
         self.count(node, cost)
+        if isinstance(result, Broken):
+            raise follows(node)
         return result, called(name, *parts)
 
     def body(self, statements: Sequence[ast.stmt]) -> tuple[list[ast.stmt], bool]:
         """Check statements; return them written anew, and whether all ways through them return."""
         made: list[ast.stmt] = []
         for position, node in enumerate(statements):
-            self.count(node)
-            if (
-                isinstance(node, ast.Expr)
-                and isinstance(node.value, ast.Constant)
-                and isinstance(node.value.value, str)
-            ):
-                continue
-            ends = self._statement(node, made)
+            try:
+                self.count(node)
+                ends = not _is_text(node) and self._statement(node, made)
+                if ends and position + 1 < len(statements):
+                    refuse(statements[position + 1], "is never reached; leave it out")
+            except UnitError as error:
+                self._mistakes.add(error)
+                ends = self._spoil(node)
             if ends:
-                if position + 1 < len(statements):
-                    refuse(statements[position + 1], "is never reached")
                 return made, True
         return made, False
+
+    def _spoil(self, node: ast.stmt) -> bool:
+        """Mark the names that a statement with an error binds as broken; say whether it returns."""
+        for name in bound(node):
+            self.kinds.setdefault(name, BROKEN)
+        if any(isinstance(part, ast.Return) for part in ast.walk(node)):
+            self._returned = BROKEN
+        return isinstance(node, ast.Return)
 
     def _statement(self, node: ast.stmt, made: list[ast.stmt]) -> bool:
         if isinstance(node, ast.Assign):
             if len(node.targets) != 1:
-                refuse(node, "assigns to one name at a time")
+                refuse(node, "assigns to one name at a time; write two statements")
             self._assign(node.targets[0], node.value, made)
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self._assign(node.target, node.value, made)
@@ -147,10 +177,11 @@ class OwnSteps(OwnLoops):
         elif isinstance(node, ast.Expr):
             kind, value = self.value(node.value)
             if kind != NOTHING:
-                refuse(node, "computes a value that nobody keeps")
+                refuse(node, "computes a value that nobody keeps; assign it, or leave it out")
             made.append(ast.Expr(value))
         elif not isinstance(node, ast.Pass):
-            refuse(node, f"a step has no statement {type(node).__name__}: it has assignments, if, for and return")
+            text = f"a step has no statement {type(node).__name__}: it has assignments, if, for and return"
+            refuse(node, text + ("; write for i in range(n) with an if inside" if isinstance(node, ast.While) else ""))
         return False
 
     def _assign(self, target: ast.expr, value: ast.expr, made: list[ast.stmt]) -> None:
@@ -206,11 +237,11 @@ class OwnSteps(OwnLoops):
             value, kind = self.as_number(target, (kind, value)), NUMBER
         before = self.kinds.get(target.id)
         if not is_once and not isinstance(kind, NumberKind | Truth):
-            refuse(target, f"{target.id} is assigned more than once, and is no number")
-        if before is not None and before != kind:
-            refuse(target, f"{target.id} is something else above")
+            refuse(target, f"{target.id} is assigned more than once, and is no number; use two names")
+        if before is not None and not is_alike(before, kind):
+            refuse(target, f"{target.id} is something else above; use another name")
         if isinstance(kind, Several) or kind == NOTHING:
-            refuse(target, "is no single value")
+            refuse(target, "is no single value; assign several numbers to as many names")
         self.kinds[target.id] = kind
         return ast.Assign([ast.Name(target.id, ast.Store())], value)
 
@@ -226,9 +257,12 @@ class OwnSteps(OwnLoops):
         else:
             refuse(target, "cannot be assigned to")
         if not is_written:
-            refuse(target, f"a step may not write {ast.unparse(target)}")
+            ways = "; it writes fields of s, and outputs and taps of x" + (
+                ", of a vector an item, such as [0]" if isinstance(kind, Numbers) else ""
+            )
+            refuse(target, f"a step may not write {ast.unparse(target)}{ways}")
         if not isinstance(kind, NumberKind):
-            refuse(target, "is no single number")
+            refuse(target, "is no single number; write an item or a field of it")
         if isinstance(target, ast.Attribute) or is_known:
             made.append(ast.Assign([place], value))
             return
@@ -251,8 +285,8 @@ class OwnSteps(OwnLoops):
             self.kinds = after_no if yes_ends else after_yes
         else:
             for name in after_yes.keys() & after_no.keys():
-                if after_yes[name] != after_no[name]:
-                    refuse(node, f"{name} is one thing or another behind it")
+                if not is_alike(after_yes[name], after_no[name]):
+                    refuse(node, f"{name} is one thing or another behind it; use two names")
             self.kinds = {name: kind for name, kind in after_yes.items() if name in after_no}
         return yes_ends and no_ends and bool(node.orelse)
 
@@ -267,10 +301,10 @@ class OwnSteps(OwnLoops):
             if isinstance(kind, Whole | Count):
                 kind, value = NUMBER, self.as_number(node.value, (kind, value))
         if isinstance(kind, Numbers | RecordKind | RecordsKind) or (
-            self._returned is not None and self._returned != kind
+            self._returned is not None and not is_alike(self._returned, kind)
         ):
-            refuse(node, "returns numbers, the same on all ways")
-        self._returned = kind
+            refuse(node, "returns numbers, the same on all ways; return the fields one by one")
+        self._returned = self._returned if isinstance(self._returned, Broken) else kind
         made.append(ast.Return(value))
 
 
@@ -282,6 +316,11 @@ def _assigned(node: ast.FunctionDef) -> Counter[str]:
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and id(part) not in counters:
             found[part.id] += 1
     return found
+
+
+def _is_text(node: ast.stmt) -> bool:
+    """Say whether a statement is a docstring."""
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
 
 
 def _arguments(names: Sequence[str]) -> ast.arguments:

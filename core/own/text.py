@@ -30,11 +30,19 @@ class UnitError(InputError):
         The mistake, and the allowed form.
     line, column : int
         Where it is, both from 1.
+    others : tuple of UnitError
+        The other errors of the text, in its order; they are in the hint too.
     """
 
-    def __init__(self, message: str, line: int, column: int) -> None:
-        super().__init__(message, f"line {line}, column {column}", code="unit")
-        self.line, self.column = line, column
+    def __init__(self, message: str, line: int, column: int, others: tuple[UnitError, ...] = ()) -> None:
+        hint = f"also {'; '.join(map(str, others))}" if others else ""
+        super().__init__(message, f"line {line}, column {column}", hint, code="unit")
+        self.line, self.column, self.others = line, column, others
+
+    @property
+    def all(self) -> tuple[UnitError, ...]:
+        """The error itself, then the others."""
+        return self, *self.others
 
 
 def refuse(node: ast.AST, message: str) -> NoReturn:
@@ -67,7 +75,8 @@ def read(source: str) -> ast.Module:
 
 def _measure(source: str) -> None:
     """Refuse a text that would be slow to read: too many words, too deep, or with numbers of many digits."""
-    brackets = blocks = in_a_line = 0
+    blocks = in_a_line = 0
+    brackets: list[tuple[int, int]] = []
     try:
         for count, token in enumerate(tokenize.generate_tokens(io.StringIO(source).readline)):
             line, column = token.start[0], token.start[1] + 1
@@ -77,11 +86,14 @@ def _measure(source: str) -> None:
                 in_a_line += 1
             blocks += (token.type == tokenize.INDENT) - (token.type == tokenize.DEDENT)
             if token.type == tokenize.OP:
-                brackets += (token.string in "([{") - (token.string in ")]}")
+                if token.string in "([{":
+                    brackets.append((line, column))
+                elif token.string in ")]}" and brackets:
+                    brackets.pop()
             limits = (
                 (count > MOST_TOKENS, f"has more than {MOST_TOKENS} words"),
                 (in_a_line > MOST_IN_A_LINE, f"has a statement of more than {MOST_IN_A_LINE} words"),
-                (brackets > DEEPEST_BRACKETS, f"has brackets deeper than {DEEPEST_BRACKETS}"),
+                (len(brackets) > DEEPEST_BRACKETS, f"has brackets deeper than {DEEPEST_BRACKETS}"),
                 (blocks > DEEPEST_BLOCKS, f"has blocks deeper than {DEEPEST_BLOCKS}"),
                 (
                     token.type == tokenize.NUMBER and len(token.string) > LONGEST_NUMBER,
@@ -92,6 +104,8 @@ def _measure(source: str) -> None:
                 if is_broken:
                     raise UnitError(text, line, column)
     except tokenize.TokenError as error:
+        if brackets:
+            raise UnitError("is no Python syntax: the bracket is not closed", *brackets[-1]) from None
         (line, column) = error.args[1]
         raise UnitError(f"is no Python syntax: {error.args[0]}", line, column + 1) from None
     except (IndentationError, SyntaxError) as error:

@@ -27,11 +27,14 @@ from core.kernel import kernel
 from core.own.declare import Declaration
 from core.own.evaluate import Evaluator
 from core.own.guarded import signed
-from core.own.kinds import NOTHING, NUMBER, Kind, RecordKind, Signals
-from core.own.public import AXES, check_ports, slot_of
+from core.own.kinds import NOTHING, NUMBER, Kind, RecordKind, Signals, is_alike
+from core.own.methods import FACTS, check_method
+from core.own.mistakes import BROKEN, Mistakes, follows
+from core.own.public import ALARMS, AXES, check_ports, slot_of
 from core.own.steps import OwnSteps
 from core.own.text import UnitError, read, refuse
 from core.own.values import Own
+from core.ports import INPUT
 from core.reference.waveform import Waveform
 from core.registry import blocks
 from core.sense.sensor import Sensor
@@ -60,6 +63,8 @@ METHODS = {
     "unsuited": ("cls", "device", "model"),
     **dict.fromkeys(("lines", "tone_hz"), ("cls", "params")),
 }
+ENTRIES = {"step": ("p", "s", "x"), "shape": ("p", "t")}
+"""Methods that are compiled, and their arguments."""
 RETURNED: dict[str, tuple[type[Any] | tuple[type[Any], ...], str]] = {
     "unsuited": (str, "a text"),
     "lines": (list, "a list of lines"),
@@ -107,35 +112,36 @@ def unit(name: str, source: str) -> Unit:
     source = without_mark(source)
     tree = read(source)
     mark = hashlib.sha256(source.encode()).hexdigest()[:12]
-    declared = Declaration(tree, f"core.own.{name}_{mark}")
+    mistakes = Mistakes()
+    declared = Declaration(tree, f"core.own.{name}_{mark}", mistakes)
+    if declared.node is None:
+        mistakes.check()
     node = cast(ast.ClassDef, declared.node)
-    family = _family(declared)
-    declared_ports = declared.inner.get("Ports", declared.base.Ports)
-    check_ports(node, family, declared_ports)
-    packed = declared.inner.get("Packed", declared.base.Packed)
-    state = declared.inner.get("State", declared.base.State)
-    steps = OwnSteps(declared.names, Judge.Packed if issubclass(declared.base, Judge) else None)
-    space: dict[str, Any] = {
-        **_attributes(declared, family),
-        **declared.inner,
-        "text": source,
-        "__module__": f"own.{family}.{name}",
-        "__doc__": declared.values["__doc__"],
-    }
-    space |= _methods(declared)
-    kinds: list[Kind] = [RecordKind(packed, False), RecordKind(state, True), Signals(declared_ports)]
-    entry, result = "step", cast(Kind, NOTHING)
-    if family == "reference":
-        entry, kinds, result = "shape", [RecordKind(packed, False), NUMBER], NUMBER
+    space: dict[str, Any] = {**declared.inner, "text": source, "__doc__": declared.values["__doc__"]}
+    family = ""
+    with mistakes.apart():
+        if "Ports" in declared.broken:
+            raise follows(node)
+        family = _family(declared)
+        with mistakes.apart():
+            check_ports(node, family, declared.inner.get("Ports", declared.base.Ports))
+        space |= {**_attributes(declared, family), "__module__": f"own.{family}.{name}"}
+    space |= _methods(declared, mistakes)
+    steps = OwnSteps(declared.names, Judge.Packed if issubclass(declared.base, Judge) else None, mistakes)
+    entry = "shape" if issubclass(declared.base, Waveform) else "step"
     method = declared.methods.get(entry)
+    with mistakes.apart():
+        if method is not None:
+            _check_step(steps, declared, method, entry)
+        elif getattr(declared.base, entry) is getattr(Block if entry == "step" else Waveform, entry):
+            refuse(node, f"has no {entry}; write a static method {entry}({', '.join(ENTRIES[entry])})")
+    for function in declared.names.values():
+        if isinstance(function, ast.FunctionDef) and function.name not in steps.called:
+            check_method(function, declared.names, mistakes, {})
+    mistakes.check()
     if method is not None:
-        returned = steps.function(method, kinds, entry)
-        if returned != result:
-            refuse(method, f"{entry} returns a number" if result == NUMBER else f"{entry} returns nothing")
-        function = _function(steps, entry, name, mark)
-        space[entry] = staticmethod(kernel(function) if family == "reference" else function)
-    elif getattr(declared.base, entry) is getattr(Block if family != "reference" else Waveform, entry):
-        refuse(node, f"has no {entry}")
+        made = _function(steps, entry, name, mark)
+        space[entry] = staticmethod(kernel(made) if entry == "shape" else made)
     try:
         block = type(node.name, (declared.base,), space)
         check_structure(block)
@@ -144,6 +150,20 @@ def unit(name: str, source: str) -> Unit:
     except (TypeError, ValueError) as error:
         raise UnitError(f"cannot be declared: {error}", node.lineno, 1) from None
     return own
+
+
+def _check_step(steps: OwnSteps, declared: Declaration, method: ast.FunctionDef, entry: str) -> None:
+    """Check the step of a unit, or the shape of a reference; a table with errors of its own is left out."""
+    packed, state = (declared.inner.get(name, getattr(declared.base, name)) for name in ("Packed", "State"))
+    kinds: dict[str, Kind] = {
+        "Packed": RecordKind(packed, False),
+        "State": RecordKind(state, True),
+        "Ports": Signals(declared.inner.get("Ports", declared.base.Ports)),
+    }
+    taken: list[Kind] = [BROKEN if name in declared.broken else kind for name, kind in kinds.items()]
+    returned = steps.function(method, [taken[0], NUMBER] if entry == "shape" else taken, entry)
+    if not is_alike(returned, NUMBER if entry == "shape" else NOTHING):
+        refuse(method, "shape returns a number" if entry == "shape" else "step returns nothing; it writes outputs of x")
 
 
 def _family(declared: Declaration) -> str:
@@ -158,8 +178,10 @@ def _family(declared: Declaration) -> str:
         return "sense"
     if declared.base is Block and any(port.source == "@active.rate" for port in ports.declared):
         return "readout"
+    if declared.base is Block and any(port.name in ALARMS and port.kind != INPUT for port in ports.declared):
+        return "diagnose"
     node = cast(ast.ClassDef, declared.node)
-    blocks = "ControllerPorts, DrivePorts or RatePorts, a Block that reads the plant or @active.rate"
+    blocks = "ControllerPorts, DrivePorts or RatePorts, a Block that reads the plant or @active.rate, or puts out alarm"
     bases = ", ".join(base.__name__ for base, _ in BASES)
     return refuse(node, f"is none of these: a Block with {blocks}, or on one of {bases}")
 
@@ -201,18 +223,21 @@ def _texts(part: Equation | Stage) -> list[Any]:
     return [text for value in astuple(part) for text in (value if isinstance(value, tuple) else (value,))]
 
 
-def _methods(declared: Declaration) -> dict[str, Any]:
+def _methods(declared: Declaration, mistakes: Mistakes) -> dict[str, Any]:
     """Return the methods that pack, begin and refuse, each worked out by walking its tree."""
-    entry = ("step", "shape")
     made: dict[str, Any] = {}
+    params = declared.inner.get("Params", getattr(declared.base, "Params", BlockParams))
+    facts = FACTS if "Params" in declared.broken else {**FACTS, "params": params.model_fields}
     for name, node in declared.methods.items():
-        if name in entry:
+        if name in ENTRIES:
             continue
-        if name not in METHODS:
-            refuse(node, f"{name} is no method of a unit; allowed: {', '.join((*METHODS, *entry))}")
-        if [argument.arg for argument in node.args.args] != list(METHODS[name]):
-            refuse(node, f"takes {', '.join(METHODS[name])}")
-        made[name] = classmethod(_worked_out(name, node, declared.names))
+        with mistakes.apart():
+            if name not in METHODS:
+                refuse(node, f"{name} is no method of a unit; allowed: {', '.join((*METHODS, *ENTRIES))}")
+            if [argument.arg for argument in node.args.args] != list(METHODS[name]):
+                refuse(node, f"{name} takes {', '.join(METHODS[name])}")
+            check_method(node, declared.names, mistakes, facts)
+            made[name] = classmethod(_worked_out(name, node, declared.names))
     made["packed"] = classmethod(_packed)
     return made
 

@@ -34,7 +34,8 @@ def verdict_metrics(board: Board, trace: dict[str, FloatArray]) -> dict[str, flo
             figures |= _verdicts(prefix, verdict, trace[f"{name}.winner"], trace[f"{name}.truth"], found)
             figures |= _alarms(prefix, verdict, NORMAL, trace[f"{name}.truth"], found)
         elif alarm is not None:
-            figures |= _alarms(prefix, alarm, 0, trace[f"{name}.truth"], found)
+            truth = trace.get(f"{name}.truth")  # without hypotheses there is none: the faults are the truth
+            figures |= _alarms(prefix, alarm, 0, _faults(board) if truth is None else truth, found)
         region = trace.get(f"{name}.region")
         if region is not None:
             loss = trace[f"{name}.loss"]
@@ -50,6 +51,18 @@ def edges(board: Board) -> list[int]:
     """Return the ticks at which a fault came or went, with start and end."""
     ticks = {tick for tick, command in board.done if isinstance(command, Inject | HealFaults)}
     return [0, *sorted(tick for tick in ticks if 0 < tick < board.tick), board.tick] if board.tick else []
+
+
+def _faults(board: Board) -> FloatArray:
+    """Return the number of faults at each tick, by the commands that were carried out."""
+    number, present = np.zeros(board.tick), set[str]()
+    for tick, command in board.done:
+        if isinstance(command, Inject):
+            present = present | {command.fault} if command.severity else present - {command.fault}
+        elif isinstance(command, HealFaults):
+            present = set() if command.heal == "all" else present - {*command.heal}
+        number[tick:] = len(present)
+    return number
 
 
 def _verdicts(

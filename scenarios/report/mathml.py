@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import unescape
 from xml.etree.ElementTree import tostring
 
@@ -13,6 +14,8 @@ KEPT = frozenset(
     "voffset linethickness columnalign columnlines columnspacing rowalign rowlines rowspacing frame notation".split()
 )
 """Attributes for the setting of mathematics; the converter also takes addresses, styles and classes from LaTeX."""
+PRIMED = re.compile(r"(?<!')('+)\^(\{[^{}]*\}|[^\s\\{}])")
+"""A derivative to a power, ``f'^2``, which the converter takes for two exponents."""
 
 
 def mathml(latex: str, *, is_block: bool) -> str:
@@ -25,6 +28,7 @@ def mathml(latex: str, *, is_block: bool) -> str:
     is_block : bool
         Whether it has a line of its own.
     """
+    latex = PRIMED.sub(lambda found: "^{" + r"\prime " * len(found[1]) + found[2] + "}", latex)
     root = Converter(display="block" if is_block else "inline").convert_to_element(latex)
     for part in root.iter():
         # the converter writes signs as references to them, which are no text of LaTeX

@@ -6,6 +6,7 @@ from pydantic import BaseModel, Field
 
 from server.api.bodies import Body
 from server.api.deps import PersonDep, ServiceDep
+from server.api.documents import is_built
 from server.api.router import Router
 from server.classroom.votes import OpenVote
 from server.errors import ApiError
@@ -28,6 +29,7 @@ class Me(BaseModel):
     lent: str | None = Field(None, description="Id of the bench of the teacher that a student drives")
     layout: str | None = Field(None, description="Id of the last layout given to the class; /me/layout returns it")
     vote: OpenVote | None = Field(None, description="The open question to the class of a student")
+    documents: bool = Field(default_factory=is_built, description="Whether the server shows the documents, at /docs")
 
 
 class Hand(Body):

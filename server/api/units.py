@@ -92,7 +92,8 @@ class UnitCheck(BaseModel):
     """A unit, or the errors in its text."""
 
     unit: CheckedUnit | None
-    error: UnitMistake | None
+    error: UnitMistake | None = Field(description="The first error")
+    errors: list[UnitMistake] = Field(description="All errors, in the order of the text")
 
 
 @router.get("")
@@ -126,10 +127,15 @@ def _checked(name: str, source: str) -> UnitCheck:
     try:
         one = unit(name, source)
     except UnitError as error:
-        return UnitCheck(unit=None, error=UnitMistake(message=error.message, line=error.line, column=error.column))
+        return _refused([UnitMistake(message=each.message, line=each.line, column=each.column) for each in error.all])
     except InputError as error:
-        return UnitCheck(unit=None, error=UnitMistake(message=str(error), line=1, column=1))
-    return UnitCheck(unit=CheckedUnit(card=card(one.block), operations=one.operations, hash=one.hash), error=None)
+        return _refused([UnitMistake(message=str(error), line=1, column=1)])
+    checked = CheckedUnit(card=card(one.block), operations=one.operations, hash=one.hash)
+    return UnitCheck(unit=checked, error=None, errors=[])
+
+
+def _refused(errors: list[UnitMistake]) -> UnitCheck:
+    return UnitCheck(unit=None, error=errors[0], errors=errors)
 
 
 @router.put("/{name}", dependencies=[RateLimited])

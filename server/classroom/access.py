@@ -45,6 +45,8 @@ _DOORS = {
         GET {API}/schemas/{{name}}
     """,
     Need.SESSION: f"""
+        GET /docs  *
+        GET /docs/{{path:path}}  *
         GET /design  *
         GET /design/{{device_id}}  *
         GET /gallery  *

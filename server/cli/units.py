@@ -42,6 +42,7 @@ def check(
 
 def _of_file(file: Path) -> dict[str, Any]:
     """Return what there is to say about the unit of a file."""
+    from core.own.text import UnitError
     from core.own.unit import unit
     from scenarios.speed.units import cost_ns
 
@@ -50,7 +51,8 @@ def _of_file(file: Path) -> dict[str, Any]:
         row = {"family": one.family, "name": one.name, "hash": one.hash, "operations": one.operations}
         return {"file": str(file), **row, "ns_per_sample": cost_ns(one.block)}
     except InputError as error:
-        return {"file": str(file), "error": error.as_dict()}
+        found = error.all if isinstance(error, UnitError) else (error,)
+        return {"file": str(file), "error": error.as_dict(), "errors": [one.as_dict() for one in found]}
 
 
 def _of_package(name: str) -> Iterator[dict[str, Any]]:
@@ -69,7 +71,9 @@ def _of_package(name: str) -> Iterator[dict[str, Any]]:
 
 
 def _line(row: dict[str, Any]) -> str:
-    """Return the text about one unit."""
+    """Return the text about one unit: a line, or a line for each error."""
+    if "errors" in row:
+        return "\n".join(f"{row['file']}: {error['message']}" for error in row["errors"])
     if "error" in row:
         error = row["error"]
         return f"{row['file']}: {error['message']}" + (f" ({error['hint']})" if error["hint"] else "")

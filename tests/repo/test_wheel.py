@@ -78,7 +78,13 @@ def test_a_wheel_is_for_every_version_of_python_and_holds_page_and_machine_code(
     data: dict[str, Any] = {"force_include": {}}
     hook(checkout).initialize("standard", data)
     kernels = "scenarios/built_kernels.zip"
-    assert data == {"force_include": {"web/dist": "server/page", kernels: kernels}}
+    parts = {"web/dist": "server/page", kernels: kernels}
+    assert data == {"force_include": parts}
+    site = checkout / build.DOCUMENTS / "index.html"
+    site.parent.mkdir(parents=True)
+    site.touch()
+    hook(checkout).initialize("standard", data)
+    assert data == {"force_include": {**parts, "docs/site": "server/site"}}
 
 
 def test_all_places_name_the_same_versions_of_python(root: Path) -> None:

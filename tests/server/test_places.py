@@ -69,7 +69,7 @@ def test_a_place_with_nothing_to_show_is_404_and_the_page_says_so(page: Any, pat
     assert answer.status_code == 404 and "the built page" in answer.text
 
 
-@pytest.mark.parametrize("path", ["/nowhere", "/gallery/a/b", "/bench", "/docs", "/scores/1", "/gallery/"])
+@pytest.mark.parametrize("path", ["/nowhere", "/gallery/a/b", "/bench", "/documents", "/scores/1", "/gallery/"])
 def test_a_path_that_is_no_place_is_404_for_browsers_and_programs(page: Any, path: str) -> None:
     browser, program = page.http.get(path, headers=HTML), page.http.get(path)
     assert browser.status_code == program.status_code == 404

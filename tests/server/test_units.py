@@ -95,6 +95,14 @@ def test_the_place_is_that_of_the_mistake(live: Any) -> None:
     assert (error["line"], error["column"]) == (line, 23) and "truth" in error["message"]
 
 
+def test_all_mistakes_come_at_once_and_the_first_is_the_error(live: Any) -> None:
+    wrong = PI.replace("x.model - x.measured", "x.modell").replace("x.error = e", "x.error = gone")
+    found = check(live, wrong)
+    assert [one["message"].partition(";")[0] for one in found["errors"]] == ["has no modell", "gone has no value here"]
+    assert found["error"] == found["errors"][0]
+    assert check(live, PI)["errors"] == []
+
+
 def test_a_name_is_one_of_small_letters(live: Any) -> None:
     for name in ("", "Pi", "a-b", "../x", "p" * 33):
         answer = live.http.post(DOOR, json={"name": name, "source": PI})

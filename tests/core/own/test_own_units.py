@@ -24,7 +24,7 @@ from tests.core.own.texts import FIT, PI, ROOT, odd
 
 BASE = "ch3-mrac-mass-x10"
 COPIED = (
-    *("open_loop", "pid", "force_to_rebalance", "forced_drive", "open_loop_rate"),
+    *("open_loop", "pid", "forced_drive", "open_loop_rate"),
     *("constant", "prbs", "sine", "square", "step"),
     *("added_mass", "damping", "drive_gain", "sensor_bias", "sensor_dropout", "sensor_hum", "sensor_noise"),
     *("sensor_quantisation", "shock", "stiffness", "vacuum_loss"),
@@ -158,7 +158,7 @@ def test_a_unit_cannot_change_or_come_while_the_board_runs() -> None:
         ({"pi": PI}, "units.pi"),
         ({"Pi!": {"source": PI}}, "units.'Pi!'"),
         ({"pi": {"source": PI, "family": "control"}}, "units.pi.family"),
-        ({"pi": {"source": "x = ("}}, "units.pi.source.line 2, column 1"),
+        ({"pi": {"source": "x = (1,\n"}}, "units.pi.source.line 1, column 5"),
     ],
 )
 def test_a_wrong_table_of_units_is_refused_by_name(units: Any, field: str) -> None:
@@ -181,7 +181,7 @@ def examples() -> list[str]:
 
 
 def test_the_units_of_the_document_work() -> None:
-    pi, judge = examples()
+    pi, judge, *_ = examples()
     assert unit("pi", pi).family == "control"
     steps = with_unit("leaky_squares", judge, {"diagnosers.mine.kind": "leaky_squares"}, "ch5-seven-step")
     assert run(steps).summary()["metrics"]["diagnosis.mine.correct_fraction"] > 0.8

@@ -55,3 +55,11 @@ def test_the_mathematics_of_all_sheets_is_set_as_the_converter_sets_it() -> None
         assert unescape(mathml(latex, is_block=False)).replace(" />", "/>") == unescape(convert(latex)).replace(
             " />", "/>"
         )
+
+
+@pytest.mark.parametrize(("latex", "primes"), [("I'^2", 1), ("I''^{2}P", 2)])
+def test_a_derivative_to_a_power_has_one_exponent(latex: str, primes: int) -> None:
+    made = mathml(latex, is_block=False)
+    exponent = "<mi>&#x02032;</mi>" * primes + "<mn>2</mn>"
+    assert unescape(exponent) in re.sub(r"</?mrow>", "", made), made
+    assert made.count("<msup>") == 1

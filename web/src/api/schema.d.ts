@@ -6531,6 +6531,11 @@ export interface components {
             layout?: string | null;
             /** @description The open question to the class of a student */
             vote?: components["schemas"]["OpenVote"] | null;
+            /**
+             * Documents
+             * @description Whether the server shows the documents, at /docs
+             */
+            documents?: boolean;
         };
         /**
          * MeasuredDevice
@@ -9789,7 +9794,13 @@ export interface components {
          */
         UnitCheck: {
             unit: components["schemas"]["CheckedUnit"] | null;
+            /** @description The first error */
             error: components["schemas"]["UnitMistake"] | null;
+            /**
+             * Errors
+             * @description All errors, in the order of the text
+             */
+            errors: components["schemas"]["UnitMistake"][];
         };
         /**
          * UnitDraft

@@ -2,6 +2,7 @@ import { Button, Menu } from "@mantine/core";
 import { IconChevronDown, IconPlayerRecordFilled } from "@tabler/icons-react";
 import { classes } from "../../api/classes";
 import { may, type Right, useMay, useMe } from "../../api/me";
+import { isInFrame } from "../../api/session";
 import { useClasses } from "../../api/use-classes";
 import { actions } from "../../bench/actions";
 import { toggleNarrator, useNarrator } from "../../bench/narrator";
@@ -28,6 +29,7 @@ export function Tools() {
   const redo = useBench((s) => s.bench?.redo?.seq !== undefined && benchChange("redo")?.text);
   const narrates = useNarrator((s) => s.on);
   const role = useMe((s) => s.me?.role);
+  const documents = useMe((s) => s.me?.documents);
   useMay("drive"); // which depends on the bench, too
   const bench: Tool[] = [
     { label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)", needs: "drive", run: () => takeBack("undo") },
@@ -66,12 +68,17 @@ export function Tools() {
         <LayoutItems />
         <Menu.Divider />
         <Items tools={page} />
+        {documents && !isInFrame() && (
+          <Menu.Item component="a" href="./docs/" target="_blank">
+            Documents
+          </Menu.Item>
+        )}
       </Menu.Dropdown>
     </Menu>
   );
 }
 
-const MORE = "Undo, record, save, share; layouts; theme and keys";
+const MORE = "Undo, record, save, share; layouts; theme, keys, documents";
 
 const Items = ({ tools }: { tools: Tool[] }) =>
   tools.map(({ label, run }) => (

@@ -22,14 +22,14 @@ const ATTRIBUTES = {
 interface CodeProps {
   source: string;
   onChange(source: string): void;
-  /** A mistake in the text, with its place. */
-  mistake: UnitMistake | null | undefined;
+  /** The mistakes in the text, each with its place; undefined while it is checked. */
+  mistakes: UnitMistake[] | undefined;
   /** The unit that passed last: the fields of x and p. */
   card: BlockCard | undefined;
 }
 
-/** The text of a unit: Python in colours, its mistake underlined. */
-export function Code({ source, onChange, mistake, card }: CodeProps) {
+/** The text of a unit: Python in colours, its mistakes underlined. */
+export function Code({ source, onChange, mistakes, card }: CodeProps) {
   const place = useRef<HTMLDivElement>(null);
   const view = useRef<EditorView>(undefined);
   const known = useRef({ onChange, card });
@@ -77,11 +77,11 @@ export function Code({ source, onChange, mistake, card }: CodeProps) {
 
   useEffect(() => {
     const { current } = view;
-    if (!current || mistake === undefined) return;
+    if (!current || !mistakes) return;
     const { doc } = current.state;
-    const found = mistake ? [{ ...spanOf(doc, mistake), severity: "error" as const, message: mistake.message }] : [];
+    const found = mistakes.map((one) => ({ ...spanOf(doc, one), severity: "error" as const, message: one.message }));
     current.dispatch(setDiagnostics(current.state, found));
-  }, [mistake]);
+  }, [mistakes]);
 
   return <div ref={place} className={styles.code} />;
 }

@@ -2,6 +2,7 @@ import { Box, Button, Switch, Text, TextInput } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { useWatches } from "../../api/me";
 import { useAnswer } from "../../api/queries";
+import type { UnitMistake } from "../../api/types";
 import { units } from "../../api/units";
 import { editCopy } from "../../bench/edit-unit";
 import { beginWith, isUnitName, nameOfClass, useDraft } from "../../bench/unit-draft";
@@ -92,7 +93,7 @@ function Bench({ list }: { list: Parameters<typeof StartFrom>[0]["list"] }) {
           <Code
             source={source}
             onChange={(text) => useDraft.setState({ source: text })}
-            mistake={checked.now ? checked.now.error : undefined}
+            mistakes={checked.now?.errors}
             card={unit?.card}
           />
         )}
@@ -139,12 +140,16 @@ function State({ name, source, checked, run }: { name: string; source: string; c
   );
 }
 
+const placed = ({ line, column, message }: UnitMistake) => `Line ${line}, column ${column}: ${message}.`;
+
+const others = (count: number) => (count ? ` ${count} more in the text, underlined.` : "");
+
 function stateOf(name: string, source: string, check: Check | undefined, refusal: string | undefined, run: Run) {
   const wrong = (text: string) => ({ text, isWrong: true });
   const fine = (text: string) => ({ text, isWrong: false });
   if (!source.trim()) return fine("Empty.");
   if (name && !isUnitName(name)) return wrong("The name: small letters, digits and _, a letter first, at most 32.");
-  if (check?.error) return wrong(`Line ${check.error.line}, column ${check.error.column}: ${check.error.message}.`);
+  if (check?.errors[0]) return wrong(`${placed(check.errors[0])}${others(check.errors.length - 1)}`);
   if (run.busy) return fine("Checked. It is being compiled for this bench.");
   if (run.refusal) return wrong(`Checked, but the bench did not take it: ${run.refusal}.`);
   if (run.trip) return wrong(`Checked, but it has tripped the bench: ${run.trip}. Change it, or go back.`);

@@ -13,7 +13,7 @@ export interface Check {
   name: string;
   source: string;
   unit: CheckedUnit | null;
-  error: UnitMistake | null;
+  errors: UnitMistake[];
 }
 
 export interface Checked {
