@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from core.block import FloatArray, IntArray
+from core.block import BoolArray, FloatArray, IntArray
 from core.board import changes, lost, program, steps
 from core.board.abreast import apart, lanes_of
 from core.board.board import Board
@@ -59,7 +59,8 @@ class SideBySide:
 
     def __init__(self, board: Board, groups: int, width: int, frame: int, kept: int) -> None:
         wiring = board.wiring
-        self.width, self.fold = width, folding((A, B), SHIFTS, NONE, RESERVED) if width > 1 else 0
+        self.groups, self.width = groups, width
+        self.fold = folding((A, B), SHIFTS, NONE, RESERVED) if width > 1 else 0
         self.p, self.s, self.w = (lanes_of(array, width, groups) for array in (wiring.p, wiring.s, wiring.w))
         self.folds = np.tile(board.folds[:, :, None], (groups, 1, 1, width))
         self.rows = np.zeros((groups, frame, kept, width))
@@ -73,14 +74,6 @@ class SideBySide:
         """Copy the numbers of a board to a place among others."""
         for one, another in zip(self.of(place), to.of(other), strict=True):
             another[...] = one
-
-
-class BoardCourse(NamedTuple):
-    """How a board runs until its next command: the number of its way, its rows, and the tick of the command."""
-
-    way: int
-    rows: tuple[int, ...]
-    moment: int
 
 
 class DrivenBoards:
@@ -99,10 +92,12 @@ class DrivenBoards:
 
     Attributes
     ----------
-    boards : list of Lane
-        The boards; each is at its first tick until it has begun.
     counts : ndarray, shape (boards,)
         Ticks of the last frame that each has ended: fewer than all of them once it has tripped, in the last of these.
+    ticks : ndarray, shape (boards,)
+        Where each is.
+    gone : ndarray, shape (boards,)
+        Whether it has tripped.
     """
 
     def __init__(self, pattern: Pattern, count: int, frame: int, columns: Sequence[str]) -> None:
@@ -122,19 +117,30 @@ class DrivenBoards:
             for row, one in enumerate(wiring.instances)
             if issubclass(one.block, Fault) and not len(wiring.state_of(one.key))
         }
-        self.counts = np.zeros(count, dtype=np.int64)
-        self._has_begun = [False] * count
-        self._ways: dict[Any, int] = {}
+        self.counts, self.ticks = (np.zeros(count, dtype=np.int64) for _ in range(2))
+        self.gone, self._has_begun = (np.zeros(count, dtype=np.bool_) for _ in range(2))
+        self._ways, self._moments = (np.zeros(count, dtype=np.int64) for _ in range(2))
+        self._running: list[tuple[int, ...]] = [()] * count
+        self._known_ways: dict[Any, int] = {}
         self._tables: dict[Any, tuple[IntArray, int]] = {}
-        self.boards = [self._board(place, pattern.board.spec, PendingQueue()) for place in range(count)]
-        self._courses = [BoardCourse(-1, (), 0)] * count
-        self._groups = [range(first, min(first + width, count)) for first in range(0, count, width)]
+        self._boards = [self._board(place, pattern.board.spec, PendingQueue()) for place in range(count)]
+        self._place_of = np.divmod(np.arange(count), width)
+        members = np.arange(self._all.groups * width).reshape(-1, width)
+        self._sizes_of_groups = np.minimum(members, count - 1)[:, -1] - members[:, 0] + 1
+        self._members = np.minimum(members, count - 1)
+
+    @property
+    def boards(self) -> list[Lane]:
+        """The boards; each is at its first tick until it has begun."""
+        for board, tick in zip(self._boards, self.ticks.tolist(), strict=True):
+            board.tick = tick
+        return self._boards
 
     @property
     def rows(self) -> FloatArray:
         """The signals kept at the ticks of the last frame, shape (ticks, signals, boards)."""
         rows = self._all.rows.transpose(1, 2, 0, 3)
-        return rows.reshape(*rows.shape[:2], -1)[:, :, : len(self.boards)]
+        return rows.reshape(*rows.shape[:2], -1)[:, :, : len(self._boards)]
 
     def begin(self, place: int, spec: Spec, pending: PendingQueue) -> FloatArray:
         """Put a new board at a place, begin its first tick, and return the signals kept.
@@ -144,11 +150,12 @@ class DrivenBoards:
         Uneven
             When it is not of the same structure.
         """
-        self.boards[place] = self._board(place, spec, pending)
-        self.counts[place], self._courses[place] = 0, BoardCourse(-1, (), 0)
+        self._boards[place] = self._board(place, spec, pending)
+        self.counts[place] = self.ticks[place] = 0
+        self._ways[place], self.gone[place] = -1, False
         self._settle(place)
         self._alone(place)
-        found: FloatArray = self.boards[place].wiring.w[self._columns]
+        found: FloatArray = self._boards[place].wiring.w[self._columns]
         return found
 
     def _board(self, place: int, spec: Spec, pending: PendingQueue) -> Lane:
@@ -161,7 +168,7 @@ class DrivenBoards:
         fill(wiring, spec, first.wiring, first.spec, {**self._pattern.read}, set())
         return Lane(spec, wiring, folds, pending, Course())
 
-    def advance(self, places: Sequence[int], voltages: FloatArray) -> None:
+    def advance(self, places: IntArray, voltages: FloatArray) -> None:
         """Hold a voltage at each of some boards for a frame of ticks, or until it trips.
 
         Raises
@@ -169,35 +176,43 @@ class DrivenBoards:
         InputError
             When an event exchanges a block.
         """
-        for place, voltage in zip(places, voltages.tolist(), strict=True):
-            self._all.s[place // self._all.width, self._asked, place % self._all.width] = voltage
+        groups, columns = self._place_of
+        self._all.s[groups[places], self._asked, columns[places]] = voltages
         self.counts[places] = 0
-        for parts in self._whole(places):
-            self._run(self._all, [part[0] // self._all.width for part in parts], parts)
-            self._end([place for part in parts for place in part])
-        while rest := [place for place in places if self._goes_on(place)]:
-            groups: dict[Any, list[int]] = defaultdict(list)
-            for place in rest:
-                moment = self.boards[place].tick, self.counts[place], self._has_begun[place]
-                groups[*moment, self._courses[place].way, place // self._all.width].append(place)
-            for part in groups.values():
+        for numbers in self._whole(places):
+            size = self._sizes_of_groups[numbers[0]]
+            members = self._members[numbers, :size]
+            self._run(self._all, numbers, members)
+            self._end(members.ravel())
+        while len(rest := places[~self._is_done(places)]):
+            parts: dict[Any, list[int]] = defaultdict(list)
+            for place in rest.tolist():
+                moment = self.ticks[place], self.counts[place], self._has_begun[place]
+                parts[*moment, self._ways[place], place // self._all.width].append(place)
+            for part in parts.values():
                 self._advance(part)
 
-    def _whole(self, places: Sequence[int]) -> Iterable[list[list[int]]]:
-        """Return groups without a command in this frame, those together that are at the same tick."""
-        wanted, found = {*places}, defaultdict(list)
-        for group in self._groups:
-            ticks = {self.boards[place].tick for place in group}
-            ways = {self._courses[place].way for place in group}
-            moment = min([self._courses[place].moment for place in group])
-            is_alike = len(ticks) == len(ways) == 1 and len(group) >= min(FEWEST, self._all.width)
-            if is_alike and min(ticks) + self._frame < moment and wanted.issuperset(group):
-                found[ticks.pop(), ways.pop(), len(group)].append(group)
-        return found.values()
+    def _is_done(self, places: IntArray) -> BoolArray:
+        found: BoolArray = self.gone[places] | (self.counts[places] == self._frame) & self._has_begun[places]
+        return found
 
-    def _goes_on(self, place: int) -> bool:
-        is_whole = self.counts[place] == self._frame and self._has_begun[place]
-        return not is_whole and self.boards[place].trip is None
+    def _whole(self, places: IntArray) -> list[IntArray]:
+        """Return the groups that have no command in this frame, those together that are at the same tick."""
+        members = self._members
+        wanted = np.zeros(len(self.counts), dtype=np.bool_)
+        wanted[places] = True
+        ticks, ways = self.ticks[members], self._ways[members]
+        is_alike = ((ticks == ticks[:, :1]) & (ways == ways[:, :1]) & wanted[members]).all(axis=1)
+        is_free = (ticks[:, 0] + self._frame < self._moments[members].min(axis=1)) & self._has_begun[members].all(
+            axis=1
+        )
+        is_many = self._sizes_of_groups >= min(FEWEST, self._all.width)
+        numbers = np.flatnonzero(is_alike & is_free & is_many)
+        found: dict[Any, list[int]] = defaultdict(list)
+        keys = zip(ticks[numbers, 0], ways[numbers, 0], self._sizes_of_groups[numbers], numbers, strict=True)
+        for *key, number in keys:
+            found[tuple(key)].append(number)
+        return [np.array(one) for one in found.values()]
 
     def _advance(self, part: list[int]) -> None:
         """Run boards of one group that are at the same tick; the columns of the others stay as they are."""
@@ -205,77 +220,77 @@ class DrivenBoards:
             for place in part:
                 self._alone(place)
             return
-        number = part[0] // self._all.width
-        others = [place for place in self._groups[number] if place not in part]
+        number, width = part[0] // self._all.width, self._all.width
+        size = self._sizes_of_groups[number]
+        others = [place for place in self._members[number, :size].tolist() if place not in part]
         for i, place in enumerate(others):
             self._all.copy(place, self._saved, i)
         choices = self._pattern.choices  # read from the first column for all
-        self._all.p[number, choices, 0] = self._all.of(part[0])[0][choices]
-        self._run(self._all, [number], [part])
+        self._all.p[number, choices, 0] = self._all.p[number, choices, part[0] % width]
+        self._run(self._all, np.array([number]), np.array([part]))
         for i, place in enumerate(others):
             self._saved.copy(i, self._all, place)
-        self._end(part)
+        self._end(np.array(part))
 
     def _alone(self, place: int) -> None:
         """Run a board by itself."""
+        alone = np.array([[place]])
         if self._all.width == 1:
-            self._run(self._all, [place], [[place]])
+            self._run(self._all, alone[0], alone)
         else:
             self._all.copy(place, self._one, 0)
-            self._run(self._one, [0], [[place]])
+            self._run(self._one, np.zeros(1, dtype=np.int64), alone)
             self._one.copy(0, self._all, place)
-        self._end([place])
+        self._end(alone[0])
 
-    def _run(self, numbers: SideBySide, groups: list[int], parts: list[list[int]]) -> None:
+    def _run(self, numbers: SideBySide, groups: IntArray, parts: IntArray) -> None:
         """Run boards at the same tick to the end of the frame, to the next command, or to a trip; or begin a tick.
 
-        ``parts`` has the boards of each group.
+        ``parts`` has a row for each group, with boards of this group.
         """
-        one = parts[0][0]
-        first, at = self.boards[one], int(self.counts[one])
+        one = int(parts[0, 0])
+        first, at, tick = self._boards[one], int(self.counts[one]), int(self.ticks[one])
         table, cut = self._table(numbers.width, parts)
-        of_groups = np.array(groups, dtype=np.int64)
         arrays = table, cut, numbers.p, numbers.s, numbers.w, first.wiring.io, numbers.rows, self._columns
         if not self._has_begun[one]:
-            begin(of_groups, first.tick, first.dt_ms, *arrays, max(0, at - 1))
-            for place in parts[0]:
-                self._has_begun[place] = True
+            begin(groups, tick, first.dt_ms, *arrays, max(0, at - 1))
+            self._has_begun[parts] = True
             return
-        halt = min([self._courses[place].moment for part in parts for place in part])
-        n = min(self._frame - at, halt - first.tick)
-        halts = first.tick + n == halt
-        columns = np.array([place % numbers.width for place in parts[0]], dtype=np.int64)
+        halt = int(self._moments[parts].min())
+        n = min(self._frame - at, halt - tick)
+        halts = tick + n == halt
+        columns = parts[0] % numbers.width
         ran = np.empty(len(groups), dtype=np.int64)
         folds = numbers.fold, numbers.folds, self._folded, self._sizes
-        go(of_groups, n, halts, first.tick, first.dt_ms, *arrays, at, *folds, columns, self._trip, ran)
-        trips = numbers.w[of_groups[:, None], self._trip, columns].any(axis=1).tolist()
-        for part, own, trip in zip(parts, ran.tolist(), trips, strict=True):
-            self.counts[part] += own
-            for place in part:
-                self.boards[place].tick += own
-                self._has_begun[place] = not (halts or trip)
+        go(groups, n, halts, tick, first.dt_ms, *arrays, at, *folds, columns, self._trip, ran)
+        self.counts[parts] += ran[:, None]
+        self.ticks[parts] += ran[:, None]
+        if halts:
+            self._has_begun[parts] = False
+        else:
+            trips = numbers.w[groups[:, None], self._trip, columns].any(axis=1)
+            self._has_begun[parts] = ~trips[:, None]
 
-    def _end(self, places: list[int]) -> None:
+    def _end(self, places: IntArray) -> None:
         """Let boards between two ticks trip, or carry out their commands."""
-        for place in places:
-            if self._has_begun[place]:
-                continue
-            board = self.boards[place]
+        for place in places[~self._has_begun[places]].tolist():
+            board, tick = self._boards[place], int(self.ticks[place])
+            board.tick = tick
             if board.wiring.w[self._trip] != 0.0:
-                self._stop(board, *changes.cause(board))
-            elif board.tick == lost.next_look(board.tick - 1) and (block := lost.lost(board.wiring, board.spec)):
-                self._stop(board, f"the state of {block} is not finite")
+                self._stop(place, *changes.cause(board))
+            elif tick == lost.next_look(tick - 1) and (block := lost.lost(board.wiring, board.spec)):
+                self._stop(place, f"the state of {block} is not finite")
             else:
                 self._settle(place)
 
-    @staticmethod
-    def _stop(board: Lane, text: str, signal: str = "") -> None:
-        reason, time_ms = text.format(signal=signal), board.tick * board.dt_ms
-        board.trip = Trip(tick=board.tick, time_ms=time_ms, reason=reason, signal=signal, value=None)
+    def _stop(self, place: int, text: str, signal: str = "") -> None:
+        board, reason = self._boards[place], text.format(signal=signal)
+        board.trip = Trip(tick=board.tick, time_ms=board.tick * board.dt_ms, reason=reason, signal=signal, value=None)
+        self.gone[place] = True
 
     def _settle(self, place: int) -> None:
         """Carry out the commands of a tick that is about to begin, and note how the board runs until the next ones."""
-        board = self.boards[place]
+        board = self._boards[place]
         try:
             if board.pending.next_tick == board.tick:
                 board.carry_out_due()
@@ -284,29 +299,25 @@ class DrivenBoards:
         except Uneven:
             raise InputError("an event exchanges a block, which no program can drive through", "events") from None
         board.use()
-        wiring, course = board.wiring, self._courses[place]
-        way, rows = course.way, course.rows
-        if way < 0 or wiring.is_changed:
-            rows = tuple(board.rest())
-            needed = tuple(row for row in rows if row not in self._optional)
+        wiring = board.wiring
+        if self._ways[place] < 0 or wiring.is_changed:
+            self._running[place] = tuple(board.rest())
+            needed = tuple(row for row in self._running[place] if row not in self._optional)
             every, choices = wiring.table[:, program.EVERY], wiring.p[self._pattern.choices]
-            way = self._number((needed, wiring.io.tobytes(), every.tobytes(), choices.tobytes()))
+            way = needed, wiring.io.tobytes(), every.tobytes(), choices.tobytes()
+            self._ways[place] = self._known_ways.setdefault(way, len(self._known_ways))
         moment = lost.next_look(board.tick)
         if board.pending.next_tick is not None:
             moment = min(moment, board.pending.next_tick)
-        self._courses[place] = BoardCourse(way, rows, moment)
-        self._has_begun[place] = False
+        self._moments[place], self._has_begun[place] = moment, False
 
-    def _number(self, way: Any) -> int:
-        return self._ways.setdefault(way, len(self._ways))
-
-    def _table(self, width: int, parts: list[list[int]]) -> tuple[IntArray, int]:
+    def _table(self, width: int, parts: IntArray) -> tuple[IntArray, int]:
         """Return the rows that run on any of some boards; a fault without severity changes no bit of the others."""
-        courses = {self._courses[place][:2] for part in parts for place in part}
-        key = width, frozenset(courses)
+        way = int(self._ways[parts[0, 0]])
+        key = width, way, frozenset([self._running[place] for place in parts.ravel().tolist()])
         if key not in self._tables:
-            rows = sorted({row for _, own in courses for row in own})
-            table = self.boards[parts[0][0]].wiring.table[rows]
+            rows = sorted({row for own in key[2] for row in own})
+            table = self._boards[parts[0, 0]].wiring.table[rows]
             first = self._pattern.board.wiring
             table[:, program.ADDRESS] = [steps.address(first, row, width) for row in rows]
             self._tables[key] = table, bisect_left(rows, self._cut)

@@ -14,6 +14,8 @@ from scenarios.outside.tracking import RENDER_MODES, Observation, TaskOptions, T
 from scenarios.schema import Scenario
 
 ID = "CombBench/Tracking-v1"
+FIRST = np.zeros(1, dtype=np.int64)
+"""The place of the only board."""
 
 
 class Tracking(gymnasium.Env[Observation, FloatArray]):
@@ -59,12 +61,12 @@ class Tracking(gymnasium.Env[Observation, FloatArray]):
         """Begin an episode, with noise of its own."""
         super().reset(seed=seed)
         seen = self.task.begin(0, self.np_random, options or {})
-        return seen, {**self.task.told(0), **self.task.drawn(0)}
+        return seen, {**self.task.told_of(0), **self.task.drawn(0)}
 
     def step(self, action: FloatArray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Hold a voltage for the samples of a step."""
-        seen, rewards, terminated, truncated = self.task.step([0], np.asarray(action).reshape(1))
-        return seen[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self.task.told(0)
+        seen, rewards, terminated, truncated = self.task.step(FIRST, np.asarray(action).reshape(1))
+        return seen[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self.task.told_of(0)
 
     def render(self) -> Picture | None:  # type: ignore[override]
         """Return the last samples as a picture."""

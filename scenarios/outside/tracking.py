@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -122,6 +122,7 @@ class TrackingTask:
         self._bounded = slice(len(columns) - len(self._constraints.names), None)
         self.limit_v = spec.context().limit_v
         self.scale_um, travel_um = _scale_um(self.scenario), float(_guard(self.scenario).travel_um)
+        self._dt_ms = spec.dt_ms
         self._scales = 1.0 / np.array([self.limit_v, *[self.scale_um] * 3, self.limit_v])
         reach = travel_um / self.scale_um
         high = np.array([1.0, reach, reach, 2.0 * reach, 1.0], dtype=np.float32)
@@ -159,13 +160,14 @@ class TrackingTask:
             self._pictures[place].clear()
         return self._seen[place].copy()
 
-    def step(self, places: Sequence[int], actions: NDArray[Any]) -> Outcome:
+    def step(self, places: IntArray, actions: NDArray[Any]) -> Outcome:
         """Hold a voltage at each of some boards for a step."""
         voltages = self.limit_v * np.asarray(actions, dtype=np.float64).reshape(len(places))
         self._boards.advance(places, voltages)
-        boards = [self._boards.boards[place] for place in places]
-        tripped = np.array([board.trip is not None for board in boards])
-        rows = np.ascontiguousarray(self._boards.rows[:, :, places])
+        tripped = self._boards.gone[places]
+        rows = self._boards.rows
+        if len(places) < rows.shape[2]:
+            rows = rows[:, :, places]
         counts: IntArray = self._boards.counts[places] - tripped
         rewards, before = np.empty(len(places)), self._before[places]
         rewarded(np.ascontiguousarray(rows[:, self._judged]), counts, before, *self._reward, self.limit_v, rewards)
@@ -177,27 +179,36 @@ class TrackingTask:
         values = self._values[places] = self._constraints.values(rows[:, self._bounded], counts)
         violated = self._constraints.violated(values)
         rewards -= self._constraints.penalty * violated
-        ticks = np.array([board.tick for board in boards])
         is_long = self._steps[places] >= (self.options.max_episode_steps or np.inf)
         terminated = tripped | (violated if self._constraints.ends else False)
         if self._pictures:
             for i, place in enumerate(places):
                 self._pictures[place].add(rows[: counts[i], self._judged, i])
-        return Outcome(seen, rewards, terminated, ~terminated & ((ticks >= self._samples) | is_long))
+        return Outcome(
+            seen, rewards, terminated, ~terminated & ((self._boards.ticks[places] >= self._samples) | is_long)
+        )
 
     def draw(self, place: int) -> Picture:
         """Return the picture of a board."""
         return self._pictures[place].draw()
 
-    def told(self, place: int) -> dict[str, Any]:
-        """Return where an episode is, and why it ended if it did."""
-        board = self._boards.boards[place]
-        trip = "" if board.trip is None else board.trip.reason
-        found: dict[str, Any] = {"tick": board.tick, "time_ms": board.tick * board.dt_ms, "trip": trip}
+    def told(self, places: IntArray) -> dict[str, NDArray[Any]]:
+        """Return where episodes are, and why they ended if they did, an array of each."""
+        ticks = self._boards.ticks[places]
+        trips = np.full(len(places), "", dtype=object)
+        for i in np.flatnonzero(self._boards.gone[places]).tolist():
+            trip = self._boards.boards[int(places[i])].trip
+            trips[i] = trip.reason if trip else ""
+        found = {"tick": ticks, "time_ms": ticks * self._dt_ms, "trip": trips}
         if self._constraints.names:
-            found["constraint_values"] = self._values[place].copy()
-            found["constraint_violation"] = bool((self._values[place] > 0.0).any())
+            values = self._values[places]
+            found |= {"constraint_values": values, "constraint_violation": self._constraints.violated(values)}
         return found
+
+    def told_of(self, place: int) -> dict[str, Any]:
+        """Return the same of one episode, as plain values."""
+        found = self.told(np.array([place]))
+        return {name: value[0] if value.ndim > 1 else value.item() for name, value in found.items()}
 
     def drawn(self, place: int) -> dict[str, Any]:
         """Return what chance and options have chosen for an episode."""

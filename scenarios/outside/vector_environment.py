@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from core.block import BoolArray, FloatArray
+from core.block import BoolArray, FloatArray, IntArray
 from core.errors import InputError
 from scenarios.outside.scope_picture import Picture
 from scenarios.outside.tracking import RENDER_MODES, Observation, TaskOptions, TrackingTask
@@ -112,14 +112,14 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
                 infos = self._add_info(infos, self._begin(place, None, {}), place)
         going = np.flatnonzero(~ended)
         if len(going):
-            outcome = self.task.step(going.tolist(), np.asarray(actions).reshape(self.num_envs)[going])
+            outcome = self.task.step(going, np.asarray(actions).reshape(self.num_envs)[going])
             self._seen[going], rewards[going] = outcome.seen, outcome.rewards
             terminated[going], truncated[going] = outcome.terminated, outcome.truncated
-            infos = self._told(infos, going.tolist())
+            infos = self._told(infos, going)
         self._has_ended = terminated | truncated
         if self.autoreset_mode is AutoresetMode.SAME_STEP and self._has_ended.any():
             for place in np.flatnonzero(self._has_ended).tolist():
-                final = {"final_obs": self._seen[place].copy(), "final_info": self.task.told(place)}
+                final = {"final_obs": self._seen[place].copy(), "final_info": self.task.told_of(place)}
                 infos = self._add_info(infos, final, place)
                 infos = self._add_info(infos, self._begin(place, None, {}), place)
         return self._seen.copy(), rewards, terminated, truncated, infos
@@ -133,11 +133,16 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         if chance is None or seed is not None:
             chance = self._chances[place] = seeding.np_random(seed)[0]
         self._seen[place], self._has_ended[place] = self.task.begin(place, chance, options), False
-        return {**self.task.told(place), **self.task.drawn(place)}
+        return {**self.task.told_of(place), **self.task.drawn(place)}
 
-    def _told(self, infos: dict[str, Any], places: list[int]) -> dict[str, Any]:
-        for place in places:
-            infos = self._add_info(infos, self.task.told(place), place)
+    def _told(self, infos: dict[str, Any], places: IntArray) -> dict[str, Any]:
+        """Add infos as ``_add_info`` does it for one environment after another."""
+        for name, values in self.task.told(places).items():
+            shape = self.num_envs, *values.shape[1:]
+            empty = np.full(shape, None, dtype=object) if values.dtype == object else np.zeros(shape, values.dtype)
+            array, mask = infos.get(name, empty), infos.get(f"_{name}", np.zeros(self.num_envs, dtype=np.bool_))
+            array[places], mask[places] = values, True
+            infos[name], infos[f"_{name}"] = array, mask
         return infos
 
     def _checked(self, mask: object) -> BoolArray:

@@ -45,7 +45,7 @@ def play(boards: DrivenBoards, events: Any, scenario: Scenario, frames: int, fra
     for place in range(len(boards.boards)):
         boards.begin(place, spec.with_seed(place + 1), events.copy())
     for number in range(frames):
-        places = [place for place, board in enumerate(boards.boards) if board.trip is None]
+        places = np.flatnonzero(~boards.gone)
         boards.advance(places, np.array([voltage(number * frame, place) for place in places]))
 
 
@@ -82,7 +82,7 @@ def test_boards_with_other_faults_and_other_ticks_keep_their_bits() -> None:
         if number == 31:
             boards.begin(2, spec.with_seed(3), events.copy())
             began[2] = number * frame
-        places = [place for place, board in enumerate(boards.boards) if board.trip is None]
+        places = np.flatnonzero(~boards.gone)
         volts = [voltage(number * frame - began[place], place) * (3.0 if place == 1 else 1.0) for place in places]
         boards.advance(places, np.array(volts))
     assert [place for place, board in enumerate(boards.boards) if board.trip is not None] == [1]
