@@ -80,8 +80,8 @@ class Episodes:
         seed = _seed(options.get("seed", seed))
         values |= options.get("values") or {}
         spec = changed(self._spec, values) if values else self._spec
-        severity = fault.severity if fault else 0.0
-        drawn = {"seed": seed, "fault": fault.fault if fault else "", "severity": severity, "values": values}
+        name, severity, at = (fault.fault, fault.severity, fault.at_sample) if fault else ("", 0.0, 0)
+        drawn = {"seed": seed, "fault": name, "severity": severity, "at_sample": at, "values": values}
         return Episode(spec.with_seed(seed), pending, drawn)
 
     def _fault(self, chance: np.random.Generator) -> Inject | None:

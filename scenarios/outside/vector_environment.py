@@ -138,6 +138,9 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
     def _told(self, infos: dict[str, Any], places: IntArray) -> dict[str, Any]:
         """Add infos as ``_add_info`` does it for one environment after another."""
         for name, values in self.task.told(places).items():
+            if len(places) == self.num_envs:
+                infos[name], infos[f"_{name}"] = values, np.ones(self.num_envs, dtype=np.bool_)
+                continue
             shape = self.num_envs, *values.shape[1:]
             empty = np.full(shape, None, dtype=object) if values.dtype == object else np.zeros(shape, values.dtype)
             array, mask = infos.get(name, empty), infos.get(f"_{name}", np.zeros(self.num_envs, dtype=np.bool_))

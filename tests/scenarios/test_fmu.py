@@ -32,7 +32,7 @@ EVENTS: list[dict[str, Any]] = [
     {"fault": "added_mass", "severity": 0.05, "at_sample": 200},
     {"fault": "debris", "severity": 0.5, "at_sample": 233},
     {"fault": "sensor_bias", "severity": 0.1, "at_sample": 300},
-    {"set": {"plant.drive_noise_v": 0.3}, "at_sample": 350},
+    {"set": {"plant.drive_noise_v": 0.03}, "at_sample": 350},
     {"heal": ["debris"], "at_sample": 400},
     {"fault": "debris", "severity": 0.5, "at_sample": 450},
 ]
@@ -47,7 +47,13 @@ SEEN = ("plant.displacement", "plant.velocity", "capacitive.displacement", "capa
 
 
 def bench(**values: Any) -> Scenario:
-    base = {"samples": SAMPLES, "diagnosers": {}, "plant.model": "nonlinear", "sensor.kind": "capacitive"}
+    base = {
+        "samples": SAMPLES,
+        "diagnosers": {},
+        "plant.model": "nonlinear",
+        "sensor.kind": "capacitive",
+        "guard.travel_um": 4.0,
+    }
     return with_values(get("first-look"), {**base, "controller.kind": "pid", **values})
 
 

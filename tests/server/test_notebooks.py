@@ -35,7 +35,7 @@ def errors_um(said: str) -> dict[str, float]:
     return {name.strip(): float(value) for name, value in re.findall(r"^(.{10}) (\d\.\d+) um$", said, re.M)}
 
 
-def test_there_are_six_and_none_has_outputs() -> None:
+def test_there_are_seven_and_none_has_outputs() -> None:
     assert [path.stem for path in NOTEBOOKS] == [
         "campaign",
         "design",
@@ -43,6 +43,7 @@ def test_there_are_six_and_none_has_outputs() -> None:
         "lqg",
         "own-controller",
         "own-diagnoser",
+        "policy",
     ]
     for path in NOTEBOOKS:
         cells = json.loads(path.read_text("utf-8"))["cells"]
@@ -98,6 +99,17 @@ def test_designs_of_other_programs(tmp_path: Path) -> None:
     right = re.search(r"right in (0\.\d+) to (0\.\d+|1\.00) of samples, at 32 points", said)
     assert best is not None and float(best[2]) < 100.0
     assert right is not None and float(right[1]) < float(right[2])
+
+
+@pytest.mark.long
+@pytest.mark.timeout(240)
+def test_a_policy_that_learns(tmp_path: Path) -> None:
+    """On episodes that it has not seen, most with a fault, its error is less than the error of the default PID."""
+    said = printed("policy", tmp_path)
+    found = re.search(r"\{'policy': ([\d.]+), 'pid': ([\d.]+), 'open_loop': ([\d.]+)\}", said)
+    assert found is not None and said.count("no fault") < 8
+    policy, pid, open_loop = map(float, found.groups())
+    assert policy < pid < 1.0 and policy < open_loop
 
 
 @pytest.mark.long
