@@ -14,7 +14,8 @@ import numpy as np
 
 from core.block import FloatArray, IntArray
 from core.board import lost, program
-from core.board.facts import has_same_blocks, is_alike, numbers, unlike
+from core.board.facts import has_same_blocks
+from core.board.filling import fill
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
@@ -136,7 +137,7 @@ class Abreast:
     ) -> None:
         self._pattern = pattern
         wiring = pattern.board.wiring
-        self._p, self._s, self._w = (_lanes(array) for array in (wiring.p, wiring.s, wiring.w))
+        self._p, self._s, self._w = (lanes_of(array, WIDTH)[0] for array in (wiring.p, wiring.s, wiring.w))
         self._folds = np.repeat(pattern.board.folds[:, :, None], WIDTH, axis=2)
         parts: dict[str, Sequence[str]] = {**{name: (name,) for name in columns}, **sums}
         self._columns = np.array([wiring.index[name] for own in parts.values() for name in own], dtype=np.int64)
@@ -172,27 +173,9 @@ class Abreast:
                 raise Uneven("another structure")
         course = pattern.courses.of(queue)
         leader = next((one for one in self._leaders if one.course is course), None)
-        wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
+        wiring = apart(pattern.board.wiring) if leader is None else leader.wiring
         wiring = replace(wiring, instances=[*order], p=p, s=s, w=w)
-        others: dict[tuple[int, str], set[str]] = {}
-        for row, read in self._read.items():
-            instance, known = order[row], before.wiring.instances[row]
-            place = instance.every, instance.axis
-            if place not in others:
-                others[place] = unlike(spec.context(*place), before.spec.context(*place))
-            if others[place].isdisjoint(read) and is_alike(instance.params, known.params):
-                if row not in self._packed:
-                    continue
-                parameters, state = before.wiring.packed(row), before.wiring.state_of(instance.key)
-            else:
-                parameters, state, self._read[row] = numbers(instance, spec)
-                self._packed.add(row)
-            packed, first = wiring.packed(row), wiring.state_of(instance.key)
-            if len(parameters) != len(packed) or len(state) != len(first):
-                raise Uneven("other lengths")
-            if not np.array_equal(np.isfinite(state), np.isfinite(first)):
-                raise Uneven("other numbers without an end")
-            packed[:], first[:] = parameters, state
+        fill(wiring, spec, before.wiring, before.spec, self._read, self._packed)
         board = Lane(spec, wiring, self._folds[:, :, lane], queue, course, leader)
         if leader is None:
             self._leaders.append(board)
@@ -274,7 +257,7 @@ class Abreast:
         self._table[:, program.ADDRESS] = [self._pattern.address(row) for row in rows]
 
 
-def _apart(wiring: Wiring) -> Wiring:
+def apart(wiring: Wiring) -> Wiring:
     """Return a wiring that a board may change."""
     return replace(
         wiring,
@@ -286,10 +269,11 @@ def _apart(wiring: Wiring) -> Wiring:
     )
 
 
-def _lanes(array: FloatArray) -> FloatArray:
-    """Return an array with a column for each board, its rows at the beginning of a cache line."""
-    room = np.empty(array.size * WIDTH + ALIGNMENT)
+def lanes_of(array: FloatArray, width: int, groups: int = 1) -> FloatArray:
+    """Return for each group an array with a column for each board, its rows at the beginning of a cache line."""
+    size = array.size * width * groups
+    room = np.empty(size + ALIGNMENT)
     start = -(room.ctypes.data // 8) % ALIGNMENT
-    found = room[start : start + array.size * WIDTH].reshape(-1, WIDTH)
+    found = room[start : start + size].reshape(groups, -1, width)
     found[:] = array[:, None]
     return found

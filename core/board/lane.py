@@ -12,6 +12,7 @@ from core.board.course import ChangedRow, Course, CourseStep
 from core.board.facts import numbers, unlike
 from core.board.fold import Words
 from core.board.log import Log, LogEntry
+from core.board.pattern import Uneven
 from core.board.pending import PendingQueue
 from core.board.program import EVERY, P_OFFSET
 from core.board.spec import Spec
@@ -92,10 +93,18 @@ class Lane(Board):
                 lane._take(row)
 
     def _carry_out(self) -> CourseStep:
-        """Carry out the commands due here; note the changes, if all commands are for faults and none is refused."""
+        """Carry out the commands due here; note the changes, if all commands are for faults and none is refused.
+
+        Raises
+        ------
+        Uneven
+            When a block comes or goes.
+        """
         before, done, waiting = self.wiring.instances, len(self.done), len([*self.pending])
         self.apply_due()
         commands, now = self.done[done:], self.wiring.instances
+        if len(now) != len(before):
+            raise Uneven("a block came or went")
         changed = [row for row, instance in enumerate(now) if instance is not before[row] and instance != before[row]]
         step = CourseStep(self.spec.faults, commands, [self._changed(row) for row in changed])
         if all(isinstance(command, Inject | HealFaults) for _, command in commands):

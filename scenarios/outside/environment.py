@@ -1,112 +1,76 @@
-"""A Gymnasium environment: an agent that drives a bench, sample by sample; importing this registers it."""
+"""Gymnasium environments: agents that drive a bench, or many; importing this registers them."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.spaces import Box
 
 from core.block import FloatArray
-from core.board.hosted import Hosted
-from core.board.outside import Sample
-from core.board.spec import MOST_SEED
-from core.errors import InputError
-from scenarios.edit import with_values
-from scenarios.library import get
-from scenarios.run import DEFAULT_SAMPLES, build_hosted
+from core.board.lane import Lane
+from scenarios.outside.scope_picture import Picture
+from scenarios.outside.tracking import RENDER_MODES, Observation, TaskOptions, TrackingTask
 from scenarios.schema import Scenario
 
-FARTHEST = 1e6
-"""Largest size of an observation, V or um: the board trips long before."""
-OBSERVED = ("reference", "model", "measured", "applied")
+ID = "CombBench/Tracking-v1"
+FIRST = np.zeros(1, dtype=np.int64)
+"""The place of the only board."""
 
 
-class Tracking(gymnasium.Env[FloatArray, FloatArray]):
-    r"""Follow the reference model of a scenario: ``CombBench/Tracking-v0``.
+class Tracking(gymnasium.Env[Observation, FloatArray]):
+    """Follow the reference model of a scenario: ``CombBench/Tracking-v1``.
 
-    An action is the voltage held over the next sample, as a share of the limit of the drive (-1 to 1); an observation
-    has the inputs of a controller: reference (V), model (um), measured (um), voltage applied (V). The reward of a step,
-    with the true displacement :math:`y` at its end, is
-
-    .. math:: R=e^{-(y_m-y)^2/\sigma^2},\qquad \sigma=1\,\mu m
-
-    so it is between 0 and 1, and a trip, which terminates the episode, costs all later rewards. The end of the scenario
-    truncates it. The seed of a reset decides the noise of this episode and of all later episodes.
+    The seed of a reset decides the noise, and the values and faults that chance draws, of this episode and of all later
+    episodes. An option ``seed`` of a reset is the seed of the noise itself, ``values`` are fields of the bench, both of
+    this episode alone.
 
     Parameters
     ----------
     scenario : str or Scenario
-        A library id, or a scenario; its events happen unchanged.
+        A library id, or a scenario.
     values : dict, optional
         Fields of the scenario written over, by dotted paths.
+    **options
+        See `scenarios.outside.tracking.TrackingTask`, which also has the observations and the rewards.
 
     Raises
     ------
     InputError
-        As `scenarios.run.build_hosted`, for another scenario than one of a single displacement.
+        As `TrackingTask`.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012 (an attribute of the class that gymnasium declares)
-    error_um = 1.0
+    metadata = {"render_modes": [*RENDER_MODES], "render_fps": 30}  # noqa: RUF012 (declared so by gymnasium)
 
-    def __init__(self, scenario: str | Scenario = "first-look", values: dict[str, Any] | None = None) -> None:
-        chosen = get(scenario) if isinstance(scenario, str) else scenario
-        self.scenario = with_values(chosen, values or {})
-        self._samples = self.scenario.samples or DEFAULT_SAMPLES
-        self._voltage = 0.0
-        self._board = build_hosted(self.scenario, law=self._answer)
-        self.limit_v = self._board.spec.context().limit_v
-        self.action_space = Box(-1.0, 1.0, (1,), np.float64)
-        self.observation_space = Box(-FARTHEST, FARTHEST, (len(OBSERVED),), np.float64)
+    def __init__(
+        self, scenario: str | Scenario = "first-look", values: dict[str, Any] | None = None, **options: Any
+    ) -> None:
+        self.task = TrackingTask(1, TaskOptions(scenario, values, **options))
+        self.scenario, self.limit_v = self.task.scenario, self.task.limit_v
+        self.action_space, self.observation_space = self.task.action_space, self.task.observation_space
+        self.render_mode = self.task.options.render_mode
 
     @property
-    def board(self) -> Hosted:
+    def board(self) -> Lane:
         """The board of this episode, for inspection; an agent that learns from it cheats."""
-        return self._board
+        return self.task.boards[0]
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[FloatArray, dict[str, Any]]:
+    ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, with noise of its own."""
         super().reset(seed=seed)
-        if options:
-            raise InputError("an episode has no options", "options", "give the environment other values")
-        noise = int(self.np_random.integers(MOST_SEED))
-        self._board = build_hosted(self.scenario, noise, law=self._answer)
-        sample = self._board.sample()
-        assert sample is not None
-        return _observation(sample), self._info()
+        seen = self.task.begin(0, self.np_random, options or {})
+        return seen, {**self.task.told_of(0), **self.task.drawn(0)}
 
-    def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        """Hold a voltage until the next sample."""
-        self._voltage = self.limit_v * float(np.asarray(action).item())
-        self._board.advance(1)
-        sample = self._board.sample()
-        if sample is None:
-            return self._last, 0.0, True, False, self._info()
-        error = self._board.value("model.displacement") - self._board.value("plant.displacement")
-        reward = math.exp(-((error / self.error_um) ** 2))
-        return _observation(sample), reward, False, self._board.tick >= self._samples, self._info()
+    def step(self, action: FloatArray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Hold a voltage for the samples of a step."""
+        seen, rewards, terminated, truncated = self.task.step(FIRST, np.asarray(action).reshape(1))
+        return seen[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self.task.told_of(0)
 
-    def _answer(self, sample: Sample) -> float:
-        self._last = _observation(sample)
-        return self._voltage
-
-    def _info(self) -> dict[str, Any]:
-        """Return where the episode is, and why it ended if it did."""
-        board = self._board
-        trip = "" if board.trip is None else board.trip.reason
-        return {"tick": board.tick, "time_ms": board.tick * board.dt_ms, "seed": board.spec.seed, "trip": trip}
+    def render(self) -> Picture | None:  # type: ignore[override]
+        """Return the last samples as a picture."""
+        return self.task.draw(0) if self.render_mode else None
 
 
-def _observation(sample: Sample) -> FloatArray:
-    """Return the observation, within the space."""
-    seen = np.array([getattr(sample, name) for name in OBSERVED])
-    within: FloatArray = np.clip(np.nan_to_num(seen), -FARTHEST, FARTHEST)
-    return within
-
-
-gymnasium.register("CombBench/Tracking-v0", f"{__name__}:Tracking")
+gymnasium.register(ID, f"{__name__}:Tracking", vector_entry_point="scenarios.outside.vector_environment:TrackingVector")

@@ -1,4 +1,4 @@
-"""The commands that export a device for other simulators, and a bench as a file."""
+"""The commands that export a bench for other simulators, and as a file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
-from scenarios.extras import require
 from server.cli.terminal import AssignOption, load, plainly, say
 
 
@@ -19,16 +18,18 @@ def fmu(
     assign: AssignOption = None,
     out: Annotated[Path, typer.Option(metavar="FILE", help="File of the FMU.")] = Path("device.fmu"),
 ) -> None:
-    """Write the device of a scenario as an FMU of FMI 3: its linear plant, voltage in, displacement out."""
-    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-    require("pythonfmu3", "fmi", "fmu")
-    from scenarios.outside.fmu import export
+    """Write a bench without its controllers as an FMU of FMI 3: voltages and severities in, signals out."""
+    from scenarios.fmu.fmu import export
+    from server.version import VERSION
 
+    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
     try:
-        export(chosen, out)
+        made = export(chosen, out, VERSION)
     except OSError as error:
         raise InputError(f"cannot write {out}: {error.strerror}", "--out") from None
-    say(f"{out}, a step of {chosen.spec.dt_ms / 1e3:g} s")
+    say(f"{out}, a step of {made.step_s:g} s, for {made.platform}")
+    for reason in made.left_out:
+        say(f"  without {reason}")
 
 
 @plainly

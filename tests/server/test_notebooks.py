@@ -38,7 +38,7 @@ def errors_um(said: str) -> dict[str, float]:
     return {name.strip(): float(value) for name, value in re.findall(r"^(.{10}) (\d\.\d+) um$", said, re.M)}
 
 
-def test_there_are_seven_and_none_has_outputs() -> None:
+def test_there_are_eight_and_none_has_outputs() -> None:
     assert [path.stem for path in NOTEBOOKS] == [
         "campaign",
         "design",
@@ -47,6 +47,7 @@ def test_there_are_seven_and_none_has_outputs() -> None:
         "lqg",
         "own-controller",
         "own-diagnoser",
+        "policy",
     ]
     for path in NOTEBOOKS:
         cells = json.loads(path.read_text("utf-8"))["cells"]
@@ -114,6 +115,17 @@ def test_detectors_of_other_tools(tmp_path: Path) -> None:
     }
     assert abs(scores["filterpy"] - scores["mmae"]) < 0.005
     assert scores["mmae"] < scores["scikit-learn"] < 0.5 < math.log(6)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(240)
+def test_a_policy_that_learns(tmp_path: Path) -> None:
+    """On episodes that it has not seen, most with a fault, its error is less than the error of the default PID."""
+    said = printed("policy", tmp_path)
+    found = re.search(r"\{'policy': ([\d.]+), 'pid': ([\d.]+), 'open_loop': ([\d.]+)\}", said)
+    assert found is not None and said.count("no fault") < 8
+    policy, pid, open_loop = map(float, found.groups())
+    assert policy < pid < 1.0 and policy < open_loop
 
 
 @pytest.mark.long

@@ -168,6 +168,13 @@ def test_a_board_that_waits_for_a_condition_runs_alone():
         Pattern(board)
 
 
+def test_boards_that_get_another_block_run_alone():
+    """An amplifier comes at a tick; each board then has one row more."""
+    events = [[{"at_sample": 30, "set": {"board.amplifier_khz": 20.0}}]] * 3
+    with pytest.raises(Uneven, match="came or went"):
+        together([RICH] * 3, events, []).run(TICKS)
+
+
 def test_controllers_that_look_on_are_left_out_unless_a_command_may_switch_to_them():
     pattern = Pattern(Board(RICH))
     wiring = pattern.board.wiring
