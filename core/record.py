@@ -108,6 +108,18 @@ class _Many:
     count: int
 
 
+@dataclass(frozen=True)
+class _Stream:
+    """Which noise stream a number is the key of."""
+
+    name: str
+
+
+def stream(name: str) -> Any:
+    """Declare the key of a noise stream, packed by the seed of the bench; ``{axis}`` is the axis of the block."""
+    return _Stream(name)
+
+
 def vector(count: int) -> Any:
     """Declare a vector of ``count`` numbers."""
     return _Many(count)
@@ -145,7 +157,11 @@ class Record:
         for field in cls.layout.fields:
             kind = record_of(declared[field.name][0])
             setattr(cls, field.name, _Scalar(field.offset) if field.kind == SCALAR else _Part(cls.layout, field, kind))
+        streams = {field.offset: declared[field.name][1] for field in cls.layout.fields}
+        cls.streams = {place: one.name for place, one in streams.items() if isinstance(one, _Stream)}
 
+    streams: ClassVar[dict[int, str]] = {}
+    """The noise streams whose keys are among the numbers, by place."""
     _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
     _blank: ClassVar[dict[int, Any]] = {}
     """The blank record of each length, to be copied."""

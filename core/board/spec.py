@@ -195,7 +195,8 @@ class Spec:
         found = self._contexts.get((every, axis))
         if found is None:
             if self._sown is not None:
-                found = replace(self._sown.context(every, axis), seed=self.seed)
+                found = object.__new__(Context)
+                vars(found).update(vars(self._sown.context(every, axis)), seed=self.seed)
             else:
                 found = replace(self.context(every), axis=axis) if axis else self._context(every)
             self._contexts[every, axis] = found
