@@ -16,7 +16,7 @@ import numpy as np
 
 from core.block import FloatArray, IntArray
 from core.board import lost, program
-from core.board.course import Course, CourseStep
+from core.board.course import CourseStep
 from core.board.facts import has_same_blocks, is_alike, numbers, unlike
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
@@ -149,9 +149,8 @@ class Abreast:
         self.boards: list[Lane] = []
         self._leaders: dict[int, Lane] = {}
         self._read = {**pattern.read}
-        courses = {id(queue): pattern.courses.of(queue) for queue in {id(queue): queue for queue in pending}.values()}
         for spec, queue in zip(specs, pending, strict=True):
-            self.boards.append(self._board(len(self.boards), spec, queue.copy(), courses[id(queue)]))
+            self.boards.append(self._board(len(self.boards), spec, queue.copy()))
         for lane in range(len(self.boards), WIDTH):  # lanes without a board follow the first
             for array in (self._p, self._s, self._w):
                 array[:, lane] = array[:, 0]
@@ -160,7 +159,7 @@ class Abreast:
         self._io = self.boards[0].wiring.io
         self._link()
 
-    def _board(self, lane: int, spec: Spec, queue: PendingQueue, course: Course) -> Lane:
+    def _board(self, lane: int, spec: Spec, queue: PendingQueue) -> Lane:
         """Return the board of a lane; it takes the numbers that are alike from the board of the lane before."""
         pattern, before = self._pattern, self.boards[-1] if self.boards else self._pattern.board
         p, s, w = self._p[:, lane], self._s[:, lane], self._w[:, lane]
@@ -171,6 +170,7 @@ class Abreast:
             order, is_new = instances(spec), True
             if not is_same_structure(pattern.board, spec, order):
                 raise Uneven("another structure")
+        course = pattern.courses.of(queue)
         leader = self._leaders.get(id(course))
         wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
         wiring = wiring.beside(order, p, s, w)
