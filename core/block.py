@@ -180,7 +180,7 @@ class Context:
 
     def key(self, stream: str) -> float:
         """Return the key of a noise stream of a block; ``{axis}`` is the axis of the block."""
-        return key(self.seed, stream.format(axis=self.axis))
+        return key(self.seed, stream.replace("{axis}", self.axis))
 
 
 LOOP = "board"

@@ -269,13 +269,15 @@ class _Part:
 
     def __init__(self, layout: RecordLayout, field: Field, kind: type[Record] | None) -> None:
         self._layout, self._field, self._kind = layout, field, kind
+        end = field.offset + field.count * (field.inner.size if field.inner else 1)
+        self._fixed = None if field.tail else slice(field.offset, end)
 
     def _slice(self, record: Record) -> slice:
+        if self._fixed is not None:
+            return self._fixed
         layout, field = self._layout, self._field
-        if field.tail:
-            length = (len(record.array) - layout.size) // layout.tails
-            return slice(layout.size + field.offset * length, layout.size + (field.offset + 1) * length)
-        return slice(field.offset, field.offset + field.count * (field.inner.size if field.inner else 1))
+        length = (len(record.array) - layout.size) // layout.tails
+        return slice(layout.size + field.offset * length, layout.size + (field.offset + 1) * length)
 
     def __get__(self, record: Record, owner: type[Record]) -> Any:
         part = record.array[self._slice(record)]

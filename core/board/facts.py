@@ -52,9 +52,8 @@ def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray, set
 
 def streams(instance: Instance, start: int) -> list[tuple[int, str]]:
     """Return the noise streams of a block whose numbers begin at a place, each with the place of its key."""
-    return [
-        (start + place, stream.format(axis=instance.axis)) for place, stream in instance.block.Packed.streams.items()
-    ]
+    own = instance.block.Packed.streams.items()
+    return [(start + place, stream.replace("{axis}", instance.axis)) for place, stream in own]
 
 
 def unlike(one: Context, other: Context) -> set[str]:

@@ -58,6 +58,8 @@ class Lane(Board):
         self.log, self.done, self.consequences, self.used = Log(), [], [], set()
         self.followers: list[Lane] = []
         self.course = course
+        self.step: CourseStep | None = None
+        """The changes of the commands that were carried out last."""
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
         self._unlike: dict[int, tuple[Context, set[str]]] = {}
         self._scores: tuple[int, dict[str, Scores]] | None = None
@@ -76,9 +78,10 @@ class Lane(Board):
 
     def carry_out_due(self) -> tuple[CourseStep, Sequence[Lane]]:
         """Carry out the commands due at this tick; return the changes, and the lanes that are to take them over."""
-        step = self.course.get(self.tick)
+        step = self.step = self.course.get(self.tick)
         if step is None:
-            return self._carry_out(), self.followers
+            self.step = self._carry_out()
+            return self.step, self.followers
         self.pending.take_due(self.tick)
         self.spec = self.spec.with_faults(step.faults)
         self.done += step.commands
@@ -141,7 +144,7 @@ class Lane(Board):
 
     def rest(self) -> list[int]:
         """Return the rows that run, and put the others to rest, in the lanes that follow too."""
-        wiring, step = self.wiring, self.course.get(self.tick)
+        wiring, step = self.wiring, self.step
         before, lanes = wiring.resting, self.followers
         if step is None or step.running is None or step.resting is None:
             running = wiring.rest(self.spec)

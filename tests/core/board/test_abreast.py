@@ -65,6 +65,18 @@ def test_boards_with_seeds_of_their_own():
         assert abreast.trace(lane)["plant.displacement"][-1] == board.value("plant.displacement")
 
 
+def test_boards_that_share_a_queue_keep_changes_of_values_to_themselves():
+    """Commands that are not all for faults are carried out on each board: on the third one they change nothing."""
+    documents = [with_values(RICH, {"reference.amplitude_v": volts, "seed": 3}) for volts in (4.0, 5.0, 6.0)]
+    boards = [Board(parse(document)) for document in documents]
+    waiting(boards[0], EVENTS)
+    pattern = Pattern(boards[0])
+    traces = LaneTraces(pattern.board.wiring, [], TICKS)
+    abreast = Abreast(pattern, [board.spec for board in boards], [boards[0].pending] * 3, traces)
+    assert abreast.run(TICKS) == [True] * 3
+    assert [board.digest() for board in abreast.boards] == [alone(document, EVENTS).digest() for document in documents]
+
+
 def test_the_trace_of_each_board_is_its_trace_alone():
     """Also between the slices that are sorted together, and of sums of signals."""
     documents = [with_values(RICH, {"seed": seed}) for seed in range(1, 4)]
