@@ -175,6 +175,9 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         return {SUPERVISOR: _supervising(library, doc[SUPERVISOR])} if SUPERVISOR in doc else {}
 
     offered = {"sensors": all_of("sensors", "sense"), "controllers": all_of("controllers", "control")}
+    suiting = dict(offered)
+    if before is not None and same("device", "plant", "model"):
+        suiting |= {key: getattr(before, key) for key in offered if offered[key] is before.offered.get(key)}
     spec = Spec(
         document=doc,
         faults=before.faults if before is not None else {},
@@ -188,10 +191,10 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         board=alone("board", AxisAmplifier, AxesBoardParams) if axes else alone("board", Amplifier, BoardParams),
         guard=alone("guard", AxisGuard if axes else RecordGuard if plant.block is RecordPlant else Guard),
         measuring=_measuring(library, doc["sensor"]["kind"]),
-        sensors=offered["sensors"],
+        sensors=suiting["sensors"],
         driving=driving(doc, plant.block),
         generators={key: generator(key, family) for key, family in plant.block.generators.items()},
-        controllers=offered["controllers"],
+        controllers=suiting["controllers"],
         offered=offered,
         supervisors=supervisors(),
         **{key: chosen(key, family) for key, family in CHOSEN.items()},

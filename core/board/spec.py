@@ -66,7 +66,7 @@ class Spec:
     ``document`` is its source in normal form: ``controllers`` and ``sensors`` hold the parameters of the controller and
     the sensor in use. ``driving`` names the controller of each slot, ``faults`` holds the faults that act. A plant with
     axes has neither reference nor model; these two sections then do nothing. ``supervisors`` has at most one.
-    ``offered`` has all sensors and controllers that fit the plant, also those that do not suit the device.
+    ``offered`` has all sensors and controllers that fit the plant, even where they do not suit the device.
     """
 
     document: Document
