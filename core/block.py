@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from core.noise import key
 from core.ports import KINDS, BlockPorts, Port
 from core.record import Record
 from core.structure import Equation as Equation
@@ -177,6 +178,10 @@ class Context:
         """Sensor noise that filters assume: the noise of the sensor, at least a thousandth of a micrometre."""
         return max(self.sensor_noise_um, 1e-3)
 
+    def key(self, stream: str) -> float:
+        """Return the key of a noise stream of a block; ``{axis}`` is the axis of the block."""
+        return key(self.seed, stream.replace("{axis}", self.axis))
+
 
 LOOP = "board"
 """The family of the blocks in ``core/loop``, which every bench has."""
@@ -290,6 +295,8 @@ class Block:
             When neither ``pack`` nor a parameter sets one of them.
         """
         record = cls.pack(params, context)
+        for place, stream in record.streams.items():
+            record.array[place] = context.key(stream)
         for name in record.blanks():
             if "." in name or not hasattr(params, name):
                 raise TypeError(f"{cls.__module__}: pack leaves {name} blank, and no parameter has this name")

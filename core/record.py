@@ -108,6 +108,18 @@ class _Many:
     count: int
 
 
+@dataclass(frozen=True)
+class _Stream:
+    """Which noise stream a number is the key of."""
+
+    name: str
+
+
+def stream(name: str) -> Any:
+    """Declare the key of a noise stream, packed by the seed of the bench; ``{axis}`` is the axis of the block."""
+    return _Stream(name)
+
+
 def vector(count: int) -> Any:
     """Declare a vector of ``count`` numbers."""
     return _Many(count)
@@ -145,7 +157,11 @@ class Record:
         for field in cls.layout.fields:
             kind = record_of(declared[field.name][0])
             setattr(cls, field.name, _Scalar(field.offset) if field.kind == SCALAR else _Part(cls.layout, field, kind))
+        streams = {field.offset: declared[field.name][1] for field in cls.layout.fields}
+        cls.streams = {place: one.name for place, one in streams.items() if isinstance(one, _Stream)}
 
+    streams: ClassVar[dict[int, str]] = {}
+    """The noise streams whose keys are among the numbers, by place."""
     _declared: ClassVar[dict[str, tuple[Any, Any]]] = {}
     _blank: ClassVar[dict[int, Any]] = {}
     """The blank record of each length, to be copied."""
@@ -253,13 +269,15 @@ class _Part:
 
     def __init__(self, layout: RecordLayout, field: Field, kind: type[Record] | None) -> None:
         self._layout, self._field, self._kind = layout, field, kind
+        end = field.offset + field.count * (field.inner.size if field.inner else 1)
+        self._fixed = None if field.tail else slice(field.offset, end)
 
     def _slice(self, record: Record) -> slice:
+        if self._fixed is not None:
+            return self._fixed
         layout, field = self._layout, self._field
-        if field.tail:
-            length = (len(record.array) - layout.size) // layout.tails
-            return slice(layout.size + field.offset * length, layout.size + (field.offset + 1) * length)
-        return slice(field.offset, field.offset + field.count * (field.inner.size if field.inner else 1))
+        length = (len(record.array) - layout.size) // layout.tails
+        return slice(layout.size + field.offset * length, layout.size + (field.offset + 1) * length)
 
     def __get__(self, record: Record, owner: type[Record]) -> Any:
         part = record.array[self._slice(record)]

@@ -59,7 +59,7 @@ def loop() -> None:
     program.run(0, 0, 1.0, table, none, none, none, np.zeros(0, np.int64), nothing, nothing, folds, 0, watches)
     wide, no, wide_folds = np.zeros((RESERVED, WIDTH)), np.zeros(0, np.int64), np.zeros((2, 0, WIDTH), np.uint64)
     trace = 0, 0, np.zeros((SLICE, 0, WIDTH)), no, np.zeros((0, WIDTH, 0)), no, no
-    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, *trace, 0)
+    abreast.run(0, 0, 1.0, table, wide, wide, wide, no, 0, wide_folds, no, no, *trace, 0, 1)
     history = History(1, 1, 1)
     history.append(Rows.of(0, np.zeros((1, 2)), 1))
     arrays, resting = (table, none, none, none, no), np.zeros(2, np.bool_)

@@ -1,7 +1,8 @@
-"""Course: the changes that the waiting commands of boards abreast make at each of their ticks, worked out once."""
+"""The changes that the commands of boards abreast make at each of their ticks, worked out once."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -23,12 +24,18 @@ class ChangedRow(NamedTuple):
     is_absent: bool
 
 
-class CourseStep(NamedTuple):
-    """The changes of the commands of one tick: the faults that act from now on, and the rows."""
+@dataclass(slots=True)
+class CourseStep:
+    """The changes of the commands of one tick: the faults that act from now on, and the rows.
+
+    ``running`` and ``resting`` are the rows that run from now on and all others, once they are known.
+    """
 
     faults: dict[str, BlockParams]
     commands: list[tuple[int, Command]]
     rows: list[ChangedRow]
+    running: list[int] | None = None
+    resting: set[int] | None = None
 
 
 Course = dict[int, CourseStep]

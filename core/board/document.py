@@ -157,7 +157,8 @@ def _park(doc: Document, usual: Document) -> None:
             if rest and isinstance(kind, str):
                 group = doc.get(all_of_them, {})
                 doc[all_of_them] = {**group, kind: {**group.get(kind, {}), **rest}}
-            doc[one] = {"kind": kind}
+            if table != {"kind": kind}:
+                doc[one] = {"kind": kind}
 
 
 def with_values(document: Document, values: dict[str, Any]) -> Document:

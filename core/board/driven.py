@@ -10,7 +10,6 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -162,10 +161,10 @@ class DrivenBoards:
         first = self._pattern.board
         p, s, w, folds, _ = self._all.of(place)
         p[:], s[:], w[:], folds[:] = first.wiring.p, first.wiring.s, first.wiring.w, first.folds
-        wiring = replace(apart(first.wiring), instances=instances(spec), p=p, s=s, w=w)
+        wiring = apart(first.wiring).beside(instances(spec), p, s, w)
         if not is_same_structure(first, spec, wiring.instances):
             raise Uneven("another structure")
-        fill(wiring, spec, first.wiring, first.spec, {**self._pattern.read}, set())
+        fill(wiring, spec, first.wiring.instances, first.spec, self._pattern, {**self._pattern.read})
         return Lane(spec, wiring, folds, pending, Course())
 
     def advance(self, places: IntArray, voltages: FloatArray) -> None:
@@ -211,7 +210,7 @@ class DrivenBoards:
         found: dict[Any, list[int]] = defaultdict(list)
         keys = zip(ticks[numbers, 0], ways[numbers, 0], self._sizes_of_groups[numbers], numbers, strict=True)
         for *key, number in keys:
-            found[tuple(key)].append(number)
+            found[tuple(key)].append(int(number))
         return [np.array(one) for one in found.values()]
 
     def _advance(self, part: list[int]) -> None:

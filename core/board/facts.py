@@ -28,17 +28,32 @@ class _Fact:
         return value
 
 
-_Noting = type("_Noting", (Context,), {fact: _Fact(fact) for fact in FACTS})
+def _key(noting: Any, stream: str) -> float:
+    """Return the key of a noise stream, which notes no fact: its place in the numbers is known."""
+    context: Context = vars(noting)[""]
+    return context.key(stream)
+
+
+_Noting = type("_Noting", (Context,), {fact: _Fact(fact) for fact in FACTS} | {"key": _key})
 """The facts of a bench, whose attributes are the facts read; a unit of a document accepts only a `Context`."""
 
 
 def numbers(instance: Instance, spec: Spec) -> tuple[FloatArray, FloatArray, set[str]]:
-    """Return the parameters and the first state of a block, and which facts of the bench they are made of."""
+    """Return the parameters and the first state of a block, and which facts of the bench they are made of.
+
+    The seed is not among these where it only makes the keys of the noise streams that the block declares.
+    """
     noting: Any = object.__new__(_Noting)
     read = vars(noting)
     read[""] = spec.context(instance.every, instance.axis)
     made = instance.packed(noting), instance.block.initial(instance.params, noting)
     return *made, read.keys() - {""}
+
+
+def streams(instance: Instance, start: int) -> list[tuple[int, str]]:
+    """Return the noise streams of a block whose numbers begin at a place, each with the place of its key."""
+    own = instance.block.Packed.streams.items()
+    return [(start + place, stream.replace("{axis}", instance.axis)) for place, stream in own]
 
 
 def unlike(one: Context, other: Context) -> set[str]:

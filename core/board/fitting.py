@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import lru_cache
 
 from core.block import Block, Oscillator
 from core.board.document import CHOSEN, ONE_DISPLACEMENT, PARKED, Document, generators
@@ -19,6 +19,7 @@ MOST_GROWTH = 100.0
 """Largest exponent of growth within a sample: the cube of the growth is still a number."""
 
 
+@lru_cache(maxsize=4096)
 def misfit(block: type[Block], plant: type[Block]) -> str:
     """Say why a block does not go with a plant; nothing when it does."""
     axes = plant.axes or ()
@@ -108,7 +109,9 @@ def suited(spec: Spec) -> Spec:
     controllers, sensors = _for(pair, plant, spec.controllers), _for(pair, plant, spec.sensors)
     if controllers is spec.controllers and sensors is spec.sensors:
         return spec
-    return replace(spec, controllers=controllers, sensors=sensors)
+    found = object.__new__(Spec)  # it keeps the values that were worked out so far
+    vars(found).update(vars(spec), controllers=controllers, sensors=sensors)
+    return found
 
 
 def _refuse_held(spec: Spec) -> None:

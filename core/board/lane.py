@@ -59,6 +59,8 @@ class Lane(Board):
         self.log, self.done, self.consequences, self.used = Log(), [], [], set()
         self.followers: list[Lane] = []
         self.course = course
+        self.step: CourseStep | None = None
+        """The changes of the commands that were carried out last."""
         self.specs: list[tuple[int, Spec]] = [(0, spec)]
         self._unlike: dict[int, tuple[Context, set[str]]] = {}
         self._scores: tuple[int, dict[str, Scores]] | None = None
@@ -75,22 +77,18 @@ class Lane(Board):
     def link(self) -> None:
         """Leave it to all boards together."""
 
-    def carry_out_due(self) -> None:
-        """Carry out the commands due at this tick, here and in the lanes that follow."""
-        step = self.course.get(self.tick)
+    def carry_out_due(self) -> tuple[CourseStep, Sequence[Lane]]:
+        """Carry out the commands due at this tick; return the changes, and the lanes that are to take them over."""
+        step = self.step = self.course.get(self.tick)
         if step is None:
-            step = self._carry_out()
-            lanes: Sequence[Lane] = self.followers
-        else:
-            self.pending.take_due(self.tick)
-            self.spec = self.spec.with_faults(step.faults)
-            self.done += step.commands
-            lanes = [self, *self.followers]
-            for row in step.rows:
-                self._take_turns(row)
+            self.step = self._carry_out()
+            return self.step, self.followers
+        self.pending.take_due(self.tick)
+        self.spec = self.spec.with_faults(step.faults)
+        self.done += step.commands
         for row in step.rows:
-            for lane in lanes:
-                lane._take(row)
+            self._take_turns(row)
+        return step, [self, *self.followers]
 
     def _carry_out(self) -> CourseStep:
         """Carry out the commands due here; note the changes, if all commands are for faults and none is refused.
@@ -120,6 +118,7 @@ class Lane(Board):
         """Return a row as it is now, and the facts its numbers are made of."""
         instance, wiring = self.wiring.instances[row], self.wiring
         own, _, read = numbers(instance, self.spec)
+        read |= {"seed"} if instance.block.Packed.streams else set()
         every, context = int(wiring.table[row, EVERY]), self.spec.context(instance.every, instance.axis)
         return ChangedRow(row, instance, context, own, read, every, wiring.absent[row])
 
@@ -130,16 +129,18 @@ class Lane(Board):
             wiring.table[row.number, EVERY], wiring.absent[row.number] = row.every, row.is_absent
             wiring.is_changed = True
 
-    def _take(self, row: ChangedRow) -> None:
-        """Take over the parameters of a row: the same ones, unless the facts that they are made of differ."""
-        instance = row.instance
-        context = self.spec.context(instance.every, instance.axis)
+    def shares(self, row: ChangedRow) -> bool:
+        """Say whether the facts that the numbers of a row are made of are the facts of this bench."""
+        context = self.spec.context(row.instance.every, row.instance.axis)
         if id(row.context) not in self._unlike:  # kept with its result, so that no other context gets its id
             self._unlike[id(row.context)] = row.context, unlike(context, row.context)
-        is_shared = self._unlike[id(row.context)][1].isdisjoint(row.read)
-        start = int(self.wiring.table[row.number, P_OFFSET])
-        self.wiring.instances[row.number] = instance
-        self.wiring.p[start : start + len(row.numbers)] = row.numbers if is_shared else instance.packed(context)
+        return self._unlike[id(row.context)][1].isdisjoint(row.read)
+
+    def pack(self, row: ChangedRow) -> None:
+        """Make the parameters of a row anew from the facts of this bench."""
+        instance, start = row.instance, int(self.wiring.table[row.number, P_OFFSET])
+        packed = instance.packed(self.spec.context(instance.every, instance.axis))
+        self.wiring.p[start : start + len(packed)] = packed
 
     def use(self) -> None:
         """Note the controllers and the sensor that are in use from now on."""
@@ -152,11 +153,18 @@ class Lane(Board):
 
     def rest(self) -> list[int]:
         """Return the rows that run, and put the others to rest, in the lanes that follow too."""
-        before = self.wiring.resting
-        running = self.wiring.rest(self.spec)
-        for lane in self.followers if self.wiring.resting is not before else ():
-            lane.wiring.put_to_rest(lane.spec, self.wiring.resting - before)
-            lane.wiring.resting = self.wiring.resting
+        wiring, step = self.wiring, self.step
+        before, lanes = wiring.resting, self.followers
+        if step is None or step.running is None or step.resting is None:
+            running = wiring.rest(self.spec)
+            if step is not None:
+                step.running, step.resting = running, wiring.resting
+        else:
+            running, lanes = step.running, [self, *self.followers]
+            wiring.is_changed, wiring.resting = False, step.resting
+        for lane in lanes if wiring.resting is not before else ():
+            lane.wiring.put_to_rest(lane.spec, wiring.resting - before)
+            lane.wiring.resting = wiring.resting
         return running
 
     def _do(self, command: Command, actor: str, reason: str = "") -> LogEntry | None:  # type: ignore[override]

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from core.block import Block, BlockParams
 from core.board.document import (
     CHOSEN,
+    PARKED,
     SILENT,
     SUPERVISOR,
     Document,
@@ -141,8 +142,8 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         return kept or Section(block, _params(params or block.Params, doc.get(key, {}), key))
 
     def all_of(key: str, family: str) -> dict[str, Section]:
-        kept: dict[str, Section] = getattr(before, key, {})
-        if same(key) and same("device", "plant", "model"):
+        kept: dict[str, Section] = before.offered.get(key, {}) if before is not None else {}
+        if kept and same(key, "plant", "slots", *PARKED):
             return kept
         tables, old = doc.get(key, {}), known.get(key, {})
         for name in tables:
@@ -173,6 +174,10 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
             return before.supervisors
         return {SUPERVISOR: _supervising(library, doc[SUPERVISOR])} if SUPERVISOR in doc else {}
 
+    offered = {"sensors": all_of("sensors", "sense"), "controllers": all_of("controllers", "control")}
+    suiting = dict(offered)
+    if before is not None and same("device", "plant", "model"):
+        suiting |= {key: getattr(before, key) for key in offered if offered[key] is before.offered.get(key)}
     spec = Spec(
         document=doc,
         faults=before.faults if before is not None else {},
@@ -186,10 +191,11 @@ def _parse(doc: Document, before: Spec | None) -> Spec:
         board=alone("board", AxisAmplifier, AxesBoardParams) if axes else alone("board", Amplifier, BoardParams),
         guard=alone("guard", AxisGuard if axes else RecordGuard if plant.block is RecordPlant else Guard),
         measuring=_measuring(library, doc["sensor"]["kind"]),
-        sensors=all_of("sensors", "sense"),
+        sensors=suiting["sensors"],
         driving=driving(doc, plant.block),
         generators={key: generator(key, family) for key, family in plant.block.generators.items()},
-        controllers=all_of("controllers", "control"),
+        controllers=suiting["controllers"],
+        offered=offered,
         supervisors=supervisors(),
         **{key: chosen(key, family) for key, family in CHOSEN.items()},
     )

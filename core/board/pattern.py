@@ -9,7 +9,7 @@ from core.board import steps
 from core.board.board import Board
 from core.board.commands import SetValues
 from core.board.course import Courses
-from core.board.facts import numbers
+from core.board.facts import numbers, streams
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
@@ -57,6 +57,12 @@ class Pattern:
         # a block that rests is packed when it starts to run
         packed = [row for row in self.used if not wiring.absent[row] or len(wiring.state_of(wiring.instances[row].key))]
         self.read = {row: numbers(wiring.instances[row], board.spec)[2] for row in packed}
+        self.streams = [one for row in packed for one in streams(wiring.instances[row], wiring.table[row, P_OFFSET])]
+        """The noise streams of the rows that are packed, each with the place of its key."""
+        self.places = {(one.every, one.axis) for row, one in enumerate(wiring.instances) if row in self.used}
+        """The intervals and axes of the rows that may run."""
+        self.varied: set[str] = set()
+        """The facts in which benches have differed so far."""
         self._addresses: dict[int, int] = {}
         self.courses = Courses()
         """The changes that the commands of boards make, worked out once."""

@@ -66,6 +66,7 @@ class Spec:
     ``document`` is its source in normal form: ``controllers`` and ``sensors`` hold the parameters of the controller and
     the sensor in use. ``driving`` names the controller of each slot, ``faults`` holds the faults that act. A plant with
     axes has neither reference nor model; these two sections then do nothing. ``supervisors`` has at most one.
+    ``offered`` has all sensors and controllers that fit the plant, even where they do not suit the device.
     """
 
     document: Document
@@ -88,6 +89,7 @@ class Spec:
     supervisors: dict[str, Section]
     readouts: dict[str, Section]
     faults: dict[str, BlockParams] = field(default_factory=dict)
+    offered: dict[str, dict[str, Section]] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def library(self) -> Library:
@@ -195,7 +197,8 @@ class Spec:
         found = self._contexts.get((every, axis))
         if found is None:
             if self._sown is not None:
-                found = replace(self._sown.context(every, axis), seed=self.seed)
+                found = object.__new__(Context)
+                vars(found).update(vars(self._sown.context(every, axis)), seed=self.seed)
             else:
                 found = replace(self.context(every), axis=axis) if axis else self._context(every)
             self._contexts[every, axis] = found

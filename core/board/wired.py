@@ -9,9 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.board.facts import has_same_blocks, numbers, unlike
+from core.board.facts import has_same_blocks, numbers, streams, unlike
+from core.board.program import P_OFFSET
 from core.board.spec import Spec
 from core.board.wiring import Wiring, wire
+from core.noise import key
 
 MOST = 8
 """Benches whose wiring is kept, 0.1 MB each."""
@@ -73,5 +75,8 @@ def _again(like: WiredBench, spec: Spec) -> Wiring | None:
         if (len(p), len(s)) != (len(packed), len(state)):
             return None
         packed[:], state[:] = p, s
+    for row, instance in enumerate(wiring.instances):
+        for place, stream in streams(instance, int(wiring.table[row, P_OFFSET])):
+            wiring.p[place] = key(spec.seed, stream)
     wiring.endless = ~np.isfinite(wiring.s)
     return wiring

@@ -68,6 +68,12 @@ class Wiring:
             **{name: getattr(self, name).copy() for name in ("left_out", "resting", "places")},
         )
 
+    def beside(self, order: list[Instance], p: FloatArray, s: FloatArray, w: FloatArray) -> Wiring:
+        """Return a wiring of blocks and numbers of its own that shares all else with this one."""
+        found = object.__new__(Wiring)
+        vars(found).update(vars(self), instances=[*order], p=p, s=s, w=w)
+        return found
+
     @property
     def trip(self) -> int:
         """The place of the signal that stops the board."""

@@ -8,6 +8,7 @@ law for them: it states that "operating conditions" change damping (3.1.3.1), th
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from core.elementary import exp, log
 from core.kernel import kernel
@@ -154,6 +155,7 @@ def stiffness_scale(temperature_k: float) -> float:
     return 1.0 - MODULUS_PER_K * (temperature_k - ROOM_K)
 
 
+@lru_cache(maxsize=256)
 def adhesion_j_m2(humidity_pct: float) -> float:
     r"""Adhesion energy of two polysilicon surfaces, J/m^2.
 

@@ -25,10 +25,10 @@ def shrunk(logarithm: float) -> float:
 @kernel
 def winner_of(probability: Vector, n: int) -> int:
     """Return the hypothesis with the largest probability, or the first of several with the same."""
-    winner = 0
+    winner, most = 0, probability[0]
     for i in range(1, n):
-        if probability[i] > probability[winner]:
-            winner = i
+        if probability[i] > most:
+            winner, most = i, probability[i]
     return winner
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import Context, Equation, parameter
+from core.block import Equation, parameter
 from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
-from core.noise import key, uniform
+from core.noise import uniform
 from core.ports import BlockPorts
-from core.record import Record
+from core.record import Record, stream
 
 
 class SensorDropout(Fault):
@@ -36,7 +34,7 @@ class SensorDropout(Fault):
     class Packed(PackedFault):
         """Profile and severity, and the noise stream."""
 
-        key: float
+        key: float = stream("faults.sensor_dropout")
 
     class Ports(BlockPorts):
         """Whether the sample is lost."""
@@ -44,13 +42,6 @@ class SensorDropout(Fault):
         sensor_held: float = effect("sensor_held")
         other: float = effect("other")
         severity: float = severity("1", "share of samples lost")
-
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack severity, profile and noise stream."""
-        p: SensorDropout.Packed = super().pack(params, context)
-        p.key = key(context.seed, "faults.sensor_dropout")
-        return p
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from core.block import Context, Equation, parameter
+from core.block import Equation, parameter
 from core.faults.fault import Fault, FaultParams, PackedFault, effect, severity, severity_now
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts
-from core.record import Record
+from core.record import Record, stream
 
 
 class SensorNoise(Fault):
@@ -34,7 +32,7 @@ class SensorNoise(Fault):
     class Packed(PackedFault):
         """Profile and severity, and the noise stream."""
 
-        key: float
+        key: float = stream("faults.sensor_noise")
 
     class Ports(BlockPorts):
         """The error added to the measurement."""
@@ -42,13 +40,6 @@ class SensorNoise(Fault):
         sensor_offset: float = effect("sensor_offset")
         other: float = effect("other")
         severity: float = severity("um", "standard deviation of the noise added")
-
-    @classmethod
-    def pack(cls, params: Any, context: Context) -> Packed:
-        """Pack severity, profile and noise stream."""
-        p: SensorNoise.Packed = super().pack(params, context)
-        p.key = key(context.seed, "faults.sensor_noise")
-        return p
 
     @staticmethod
     def step(p: Packed, s: Record, x: Ports) -> None:

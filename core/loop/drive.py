@@ -7,9 +7,9 @@ from typing import Any, Literal
 from core.block import Block, BlockParams, Context, parameter
 from core.converter import BITS, Converter, convert, reach, step_of
 from core.elementary import floor
-from core.noise import key, uniform
+from core.noise import uniform
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record
+from core.record import Record, stream
 
 
 class Drive(Block):
@@ -40,7 +40,7 @@ class Drive(Block):
 
         dither_v: float
         dither_per_ms: float
-        dither_key: float
+        dither_key: float = stream("drive.dither")
 
     class Ports(BlockPorts):
         """Requested voltage, applied voltage."""
@@ -69,7 +69,6 @@ class Drive(Block):
         p = cls.Packed.blank()
         p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.dither_per_ms = params.dither_rate_hz / 1e3
-        p.dither_key = key(context.seed, "drive.dither")
         return p
 
     @staticmethod

@@ -8,9 +8,9 @@ from typing import Any
 from core.block import Block, BlockParams, Context, Equation, parameter
 from core.kernel import kernel
 from core.lag import moments_of_decay
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 
 
 class SamplerParams(BlockParams):
@@ -25,7 +25,7 @@ class PackedSampler(Record):
 
     dt_ms: float
     jitter_ms: float
-    key: float
+    key: float = stream("board.sampler")
     per_interval: float
     decay: float
     end: float
@@ -115,7 +115,7 @@ class Sampler(Block):
         """Pack filter and clock."""
         p = cls.Packed.blank()
         share = 2.0 * math.pi * params.antialias_khz * context.dt_ms
-        p.dt_ms, p.jitter_ms, p.key = context.dt_ms, 1e-3 * params.jitter_us, key(context.seed, "board.sampler")
+        p.dt_ms, p.jitter_ms = context.dt_ms, 1e-3 * params.jitter_us
         *moments, p.decay = moments_of_decay(share)
         p.per_interval = share
         p.end, p.slope, p.bend, p.twist = (share * moment for moment in moments)

@@ -270,16 +270,18 @@ def read(s: Score.State, names: list[str], winner: int, unexplained: bool) -> Sc
     """Read the counters of a score block; winner and whether no hypothesis fits are among its signals."""
     n = len(names)
     kept = min(int(s.exits), EXITS)
-    exits = zip(s.exit_tick[EXITS - kept :], s.exit_samples[EXITS - kept :], strict=True)
+    exits = zip(s.exit_tick[EXITS - kept :].tolist(), s.exit_samples[EXITS - kept :].tolist(), strict=True)
     delays = s.delays[: min(int(s.steps), STEPS)].tolist()
-    return Scores(
+    return Scores.model_construct(  # of these kinds already
         names=names,
         samples=int(s.total),
         winner=winner,
         truth=int(s.truth) if s.started else -1,
         correct_fraction=float(s.right / max(s.total, 1.0)),
         false_switches=int(s.exits),
-        last_false_switches=[FalseSwitch(tick=int(tick), samples=int(samples)) for tick, samples in exits],
+        last_false_switches=[
+            FalseSwitch.model_construct(tick=int(tick), samples=int(samples)) for tick, samples in exits
+        ],
         delays=[None if value < 0 else int(value) for value in delays],
         since_tick=int(s.since),
         nis=float(s.nis_sum / s.nis_count) if s.nis_sum else None,  # 0 from first to last where the bank has none

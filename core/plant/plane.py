@@ -9,12 +9,11 @@ from typing import Any
 from core.block import Context, parameter
 from core.device.geometry import drawn
 from core.device.lateral import lateral
-from core.noise import key
 from core.plant.contact import ContactParams, TouchingShuttle, resolved_us
 from core.plant.shuttle import ELASTICITY
 from core.plant.suspension import Suspension
 from core.ports import reads
-from core.record import Record
+from core.record import Record, stream
 from core.units import UN_PER_N, thermal_force_un
 
 
@@ -98,8 +97,8 @@ class Plane(TouchingShuttle):
         near_um: float
         thermal_coarse: float
         thermal_fine: float
-        side_key: float
-        turn_key: float
+        side_key: float = stream("plant.thermal.side")
+        turn_key: float = stream("plant.thermal.turn")
 
     class State(Record):
         """Suspension of this sample, one over its mass, dampings, outer forces; time of the first contact."""
@@ -171,8 +170,6 @@ class Plane(TouchingShuttle):
         p.near_um = 0.4 * gap
         p.thermal_coarse = noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse)
         p.thermal_fine = noisy * thermal_force_un(context.temperature_k, context.dt_ms / coarse / fine)
-        p.side_key = key(context.seed, "plant.thermal.side")
-        p.turn_key = key(context.seed, "plant.thermal.turn")
         return p
 
     @classmethod

@@ -8,9 +8,9 @@ from typing import Any
 from core.block import Block, BlockParams, Context, Oscillator, parameter
 from core.device.two_axis import TwoAxis
 from core.kernel import kernel
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record
+from core.record import Record, stream
 from core.units import UN_PER_N, thermal_force_un
 
 ELASTICITY = reads("effects.elasticity_scale", "1", "stiffness of all beams alike over nominal")
@@ -29,7 +29,7 @@ class PackedMotion(Record):
     initial_displacement_um: float
     initial_velocity_um_ms: float
     drive_noise_v: float
-    drive_key: float
+    drive_key: float = stream("plant.drive")
 
 
 class ShuttleParams(BlockParams):
@@ -60,7 +60,7 @@ class Shuttle(Block):
         first_v: float
         second_v: float
         thermal: float
-        thermal_key: float
+        thermal_key: float = stream("plant.thermal")
 
     class Ports(BlockPorts):
         """Inputs of every plant, then the inputs of one kind of plant; then the motion and state it writes."""
@@ -104,9 +104,7 @@ class Shuttle(Block):
         p.dt_ms = context.dt_ms
         p.capacitance_gradient = context.capacitance_gradient * UN_PER_N
         p.first_v, p.second_v = context.stator_voltages
-        p.drive_key = key(context.seed, "plant.drive")
         p.thermal = thermal_force_un(context.temperature_k, context.dt_ms) if params.thermal_noise else 0.0
-        p.thermal_key = key(context.seed, "plant.thermal")
         return p
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from core.block import BlockParams, Context, Equation, Oscillator, parameter
 from core.device.oscillator import held
 from core.kernel import flush_tiny
-from core.noise import key, normal
+from core.noise import normal
 from core.plant.shuttle import PackedMotion, Shuttle, at_rest_sideways, coefficients
 from core.record import Record
 
@@ -69,7 +69,6 @@ class TransferFunctionPlant(Shuttle):
         p.stiffness = plant.stiffness
         p.force = plant.force
         p.dt_ms = context.dt_ms
-        p.drive_key = key(context.seed, "plant.drive")
         return p
 
     @staticmethod

@@ -7,7 +7,8 @@ from typing import Any
 from core.block import Context, Equation, parameter
 from core.elementary import floor
 from core.kernel import kernel
-from core.noise import key, uniform
+from core.noise import uniform
+from core.record import stream
 from core.reference.waveform import ReferenceParams, Waveform
 
 
@@ -26,14 +27,13 @@ class Prbs(Waveform):
         """Chips per ms and the key of the sequence."""
 
         chips_per_ms: float
-        key: float
+        key: float = stream("reference.prbs")
 
     @classmethod
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the rate of the chips and the key of the sequence."""
         p: Prbs.Packed = super().pack(params, context)
         p.chips_per_ms = params.chip_rate_hz / 1e3
-        p.key = key(context.seed, "reference.prbs")
         return p
 
     @staticmethod

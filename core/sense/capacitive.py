@@ -10,9 +10,9 @@ import numpy as np
 from core.block import Context, Equation, parameter
 from core.device.geometry import drawn
 from core.kernel import kernel
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record
+from core.record import Record, stream
 from core.sense.sensor import TRUE_PORT, Sensor, SensorParams
 from core.units import FF_PER_F, UM_PER_M
 
@@ -85,8 +85,8 @@ class Capacitive(Sensor):
         gap: float
         start: float
         noise: float
-        positive_key: float
-        negative_key: float
+        positive_key: float = stream("sensor.capacitive.positive")
+        negative_key: float = stream("sensor.capacitive.negative")
 
     class Ports(BlockPorts):
         """Reads the motion in the plane; writes capacitances and displacement."""
@@ -133,8 +133,6 @@ class Capacitive(Sensor):
         p.gap = cls._gap_um(params, context)
         p.start = comb.stator_tip_um if params.comb_start_um is None else params.comb_start_um
         p.noise = cls.noise_ff(params, context) / math.sqrt(2.0)
-        p.positive_key = key(context.seed, "sensor.capacitive.positive")
-        p.negative_key = key(context.seed, "sensor.capacitive.negative")
         return p
 
     @staticmethod

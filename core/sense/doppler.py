@@ -8,9 +8,9 @@ from typing import Any
 from core.block import Context, Equation, parameter
 from core.elementary import exp
 from core.kernel import flush_tiny
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 from core.sense.grating import G, Grating, GratingParams, pack_grating, series
 from core.sense.sensor import Sensor
 
@@ -50,7 +50,7 @@ class Doppler(Sensor):
         """The height over the grating, the noise and its stream, sample interval, share of the integral kept."""
 
         noise_um_ms: float
-        key: float
+        key: float = stream("sensor.doppler")
         dt_ms: float
         decay: float
 
@@ -73,7 +73,6 @@ class Doppler(Sensor):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p: Doppler.Packed = params.packed(cls.Packed, context)
-        p.key = key(context.seed, "sensor.doppler")
         p.dt_ms = context.dt_ms
         p.decay = exp(-context.dt_ms / params.leak_ms)
         return p

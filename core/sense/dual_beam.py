@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Context, Equation, parameter
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 from core.sense.grating import BeamParams, Grating, level
 from core.sense.sensor import Sensor
 
@@ -32,8 +32,8 @@ class DualBeam(Sensor):
         """The light over the grating, the noise of both detectors and their streams, the distance between the beams."""
 
         noise: float
-        first_key: float
-        second_key: float
+        first_key: float = stream("sensor.dual_beam.first")
+        second_key: float = stream("sensor.dual_beam.second")
         spacing_um: float
 
     class Ports(BlockPorts):
@@ -48,8 +48,6 @@ class DualBeam(Sensor):
         """Pack the parameters for the step."""
         p: DualBeam.Packed = params.packed(cls.Packed, context)
         p.noise = params.noise
-        p.first_key = key(context.seed, "sensor.dual_beam.first")
-        p.second_key = key(context.seed, "sensor.dual_beam.second")
         return p
 
     @staticmethod

@@ -8,9 +8,9 @@ from typing import Any
 from core.block import Block, BlockParams, Context, Equation, parameter
 from core.converter import step_of
 from core.elementary import floor
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 
 
 class Ideal(Block):
@@ -31,7 +31,7 @@ class Ideal(Block):
         """The noise and its stream, the converter."""
 
         noise_um: float
-        key: float
+        key: float = stream("sensor")
         quantum_um: float
         range_um: float
 
@@ -56,7 +56,6 @@ class Ideal(Block):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.key = key(context.seed, "sensor")
         step = step_of(params.quantum_um, params.bits, params.range_um)
         p.quantum_um = step
         if step > 0.0:  # the last step within the range

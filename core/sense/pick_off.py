@@ -7,9 +7,9 @@ from typing import Any
 from core.block import BlockParams, Context, Equation, parameter
 from core.elementary import floor
 from core.flicker import ROOT_VARIANCE, Flicker, PackedFlicker, flicker_now, pack_flicker, start_flicker
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads, tap
-from core.record import Record
+from core.record import Record, stream
 from core.sense.sensor import Sensor
 from core.units import noise_of_sample, um_of_pm
 
@@ -56,8 +56,8 @@ class PickOff(Sensor):
         noise_um: float
         noise_um_ms: float
         quantum_um: float
-        key: float
-        velocity_key: float
+        key: float = stream("sensor.{axis}")
+        velocity_key: float = stream("sensor.{axis}.velocity")
         flicker: PackedFlicker
 
     class State(Record):
@@ -93,8 +93,6 @@ class PickOff(Sensor):
         p.noise_um = um_of_pm(noise_of_sample(params.noise_pm_rthz, context.dt_ms))
         p.noise_um_ms = um_of_pm(noise_of_sample(params.velocity_noise_nm_s_rthz, context.dt_ms))
         p.quantum_um = um_of_pm(params.quantum_pm)
-        p.key = key(context.seed, f"sensor.{context.axis}")
-        p.velocity_key = key(context.seed, f"sensor.{context.axis}.velocity")
         size = um_of_pm(params.flicker_pm_rthz) * ROOT_VARIANCE
         pack_flicker(p.flicker, context, f"sensor.{context.axis}.flicker", size, FASTEST_SAMPLES)
         return p

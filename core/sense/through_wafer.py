@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Context, Equation
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 from core.sense.grating import BeamParams, Grating, level
 from core.sense.sensor import Sensor
 
@@ -39,7 +39,7 @@ class ThroughWafer(Sensor):
         """The light over the grating, the noise of the detector and its stream."""
 
         noise: float
-        key: float
+        key: float = stream("sensor.through_wafer")
 
     class Ports(BlockPorts):
         """Reads the displacement; writes the light."""
@@ -52,7 +52,6 @@ class ThroughWafer(Sensor):
         """Pack the parameters for the step."""
         p: ThroughWafer.Packed = params.packed(cls.Packed, context)
         p.noise = params.noise
-        p.key = key(context.seed, "sensor.through_wafer")
         return p
 
     @staticmethod

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from core.block import Context, Equation, parameter
-from core.noise import key, normal
+from core.noise import normal
 from core.ports import BlockPorts, output, reads
-from core.record import Record
+from core.record import Record, stream
 from core.sense.sensor import Sensor, SensorParams
 
 
@@ -32,7 +32,7 @@ class Velocimeter(Sensor):
         """The noise and its stream."""
 
         noise_um_ms: float
-        key: float
+        key: float = stream("sensor.velocimeter")
 
     class Ports(BlockPorts):
         """True and measured velocity."""
@@ -44,7 +44,6 @@ class Velocimeter(Sensor):
     def pack(cls, params: Any, context: Context) -> Packed:
         """Pack the parameters for the step."""
         p = cls.Packed.blank()
-        p.key = key(context.seed, "sensor.velocimeter")
         return p
 
     @staticmethod

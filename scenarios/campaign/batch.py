@@ -16,6 +16,7 @@ from core.board.board import Board
 from core.board.changes import check
 from core.board.commands import MakeSafe
 from core.board.lane import Lane
+from core.board.lane_traces import LaneTraces
 from core.board.observer import warnings
 from core.board.pattern import Pattern, Uneven
 from core.board.pending import PendingCommand, PendingQueue
@@ -96,35 +97,32 @@ def _abreast(runs: Sequence[Run], numbers: list[int], found: dict[int, RunOutcom
     queues = {id(scenario.events): board.pending.copy()}
     if samples * (len(names) + len(sums)) * WIDTH > MOST_NUMBERS:
         return
+    traces = LaneTraces(board.wiring, names, samples, sums)
     for start in range(0, len(numbers), WIDTH):
         chosen = numbers[start : start + WIDTH]
         if len(chosen) >= FEWEST:
-            found |= _together(pattern, (names, samples, sums), told, queues, runs, chosen)
+            found |= _together(pattern, traces, told, queues, runs, chosen)
             tell()
 
 
 def _together(
     pattern: Pattern,
-    kept: tuple[list[str], int, dict[str, list[str]]],
+    traces: LaneTraces,
     told: dict[str, str],
     waits: dict[int, PendingQueue],
     runs: Sequence[Run],
     chosen: list[int],
 ) -> dict[int, RunOutcome]:
-    """Carry out some runs.
-
-    ``kept`` has the signals to keep, the ticks, and the sums of signals to keep; ``waits`` has the commands of the
-    lists of events seen so far, by their identity.
-    """
+    """Carry out some runs; ``waits`` has the commands of the lists of events seen so far, by their identity."""
     began = time.perf_counter()
     try:
         specs = [runs[number][0].spec.with_seed(runs[number][1]) for number in chosen]
         for scenario in (runs[number][0] for number in chosen):
             if id(scenario.events) not in waits:
                 waits[id(scenario.events)] = waiting(scenario, pattern.board)
-        queues = [waits[id(runs[number][0].events)].copy() for number in chosen]
-        boards = Abreast(pattern, specs, queues, *kept)
-        came = boards.run(kept[1])
+        queues = [waits[id(runs[number][0].events)] for number in chosen]
+        boards = Abreast(pattern, specs, queues, traces)
+        came = boards.run(traces.samples)
     except (InputError, Uneven):
         return {}
     found = {}

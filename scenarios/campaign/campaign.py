@@ -44,6 +44,8 @@ Found = list[tuple[str, str]]
 """Outcomes as JSON, by the key of the run."""
 Others = list[list[str]]
 """Outcomes of all runs but the first, point by point."""
+_last: list[tuple[Point, Scenario]] = []
+"""The point that this process has read last: the next one is read as a difference from it, in the next batch too."""
 
 
 class ResultTable(Protocol):
@@ -83,12 +85,11 @@ def compute(runs: list[Run], version: str) -> tuple[Found, float]:
     _check_version(version)
     began = time.perf_counter()
     read: dict[int, Scenario | InputError] = {}
-    last: tuple[Point, Scenario] | None = None
     for _, point, _ in runs:
         if id(point) not in read:
             try:
-                read[id(point)] = scenario = point.read(last)
-                last = point, scenario
+                read[id(point)] = scenario = point.read(_last[0] if _last else None)
+                _last[:] = [(point, scenario)]
             except InputError as error:
                 read[id(point)] = error
     good: list[tuple[str, tuple[Scenario, int]]] = []

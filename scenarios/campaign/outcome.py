@@ -112,7 +112,7 @@ def summed(
 
 
 def _diagnosis(board: Board, name: str, scores: Scores, trace: dict[str, FloatArray]) -> Diagnosis:
-    counted = Diagnosis(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
+    counted = Diagnosis.model_construct(names=scores.names, confusion=scores.confusion, delays=scores.delays[1:])
     healthy, none, faults = odds_of(board, name, scores.names)
     if healthy is None or none not in trace or board.tick == 0:
         return counted

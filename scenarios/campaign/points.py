@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.block import FloatArray, IntArray
+from core.board.document import says_the_same
 from core.errors import InputError
 from scenarios.edit import written
 from scenarios.key import content_hash
@@ -113,17 +114,18 @@ class Point:
             When its values give no valid scenario.
         """
         point, like = last or (None, None)
-        if point is not None and like is not None and point.base is self.base and _are_numbers(point, self):
+        if point is not None and like is not None and _are_numbers(point, self):
             with suppress(InputError):  # which does not name the field as it is written
                 return like.with_numbers(self.values, lambda: self.document)
         return Scenario.load(self.document, like=like)
 
 
 def _are_numbers(*points: Point) -> bool:
-    """Say whether points write numbers to the same fields of the bench, and nothing else."""
+    """Say whether points of one base write numbers to the same fields of the bench, and nothing else."""
     one, other = (point.values for point in points)
     return (
-        one.keys() == other.keys()
+        says_the_same(*(point.base for point in points))
+        and one.keys() == other.keys()
         and all(type(value) is float for values in (one, other) for value in values.values())
         and not any(path.partition(".")[0] in HEAD for path in one)
     )

@@ -13,6 +13,7 @@ from typing import Any, cast
 import numpy as np
 
 from core.block import FloatArray, IntArray
+from core.kernel import kernel
 
 BLOCK = 1 << 16
 """Samples of a block."""
@@ -87,4 +88,16 @@ def stretches(column: FloatArray) -> Iterator[int]:
     """Yield 0, and the samples at which a column takes another value."""
     yield 0
     for number, (block,) in enumerate(blocks(column, more=1)):
-        yield from (number * BLOCK + 1 + np.flatnonzero(block[1:] != block[:-1])).tolist()
+        found = np.empty(len(block), dtype=np.int64)
+        yield from (number * BLOCK + found[: _steps(block, found)]).tolist()
+
+
+@kernel
+def _steps(column: FloatArray, found: IntArray) -> int:
+    """Write the samples that differ from the sample before; return how many they are."""
+    count = 0
+    for i in range(1, len(column)):
+        if column[i] != column[i - 1]:
+            found[count] = i
+            count += 1
+    return count

@@ -66,6 +66,47 @@ def _errors(x: FloatArray, model: FloatArray, band: float, total: float, peak: f
     return total, peak, settled
 
 
+def tracked(
+    x: FloatArray, model: FloatArray, u: FloatArray, start: int, tail: int, share: float
+) -> tuple[float, float, int, float, float]:
+    """Return the `errors` from a sample on, their root mean square in the tail, and the root mean square of u there.
+
+    The band is a share of the swing of the model in the tail, which begins at sample ``tail``.
+    """
+    if len(x) > BLOCK:
+        band = share * swing(model[tail:])
+        whole = errors(x[start:], model[start:], band)
+        return *whole, errors(x[tail:], model[tail:], band)[0], rms(u[tail:])
+    total, peak, settled, last, effort = _tracked(loaded(x), loaded(model), loaded(u), start, tail, share)
+    count = len(x) - tail
+    return math.sqrt(total / (len(x) - start)), peak, settled, math.sqrt(last / count), math.sqrt(effort / count)
+
+
+@kernel
+def _tracked(
+    x: FloatArray, model: FloatArray, u: FloatArray, start: int, tail: int, share: float
+) -> tuple[float, float, int, float, float]:
+    largest, last, effort = 0.0, 0.0, 0.0
+    for i in range(tail, len(x)):
+        size = abs(model[i])
+        if not size <= largest:
+            largest = size
+        error = x[i] - model[i]
+        last += error * error
+        effort += u[i] * u[i]
+    band = share * largest
+    total, peak, settled = 0.0, 0.0, 0
+    for i in range(start, len(x)):
+        error = x[i] - model[i]
+        size = abs(error)
+        total += error * error
+        if not size <= peak:
+            peak = size
+        if size > band:
+            settled = i - start + 1
+    return total, peak, settled, last, effort
+
+
 def last_step(values: FloatArray) -> int:
     """Return the sample at which a signal takes its last value, 0 if it always had it."""
     for end in range(len(values), 1, -BLOCK):

@@ -15,7 +15,7 @@ from core.board.spec import Spec
 from core.kernel import kernel
 from core.loop.score import Scores
 from scenarios.measure.blocks import BLOCK, blocks, largest, last_where, loaded, mean, stretches
-from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
+from scenarios.measure.errors import first_peaks, last_step, tracked
 from scenarios.measure.lateral import lateral_metrics
 from scenarios.measure.rate import rate_metrics
 from scenarios.measure.sensing import sensing_metrics
@@ -119,14 +119,13 @@ def control_metrics(board: Board, trace: dict[str, FloatArray], stretch: Stretch
     x, model = trace["plant.displacement"], trace["model.displacement"]
     u, r = trace["drive.voltage"], trace["reference.voltage"]
     start, tail = stretch.start(len(x), dt), stretch.tail(len(x))
-    band = SETTLED * swing(model[tail])
-    error, peak, settled = errors(x[start:], model[start:], band)
+    error, peak, settled, last, effort = tracked(x, model, u, start, tail.start, SETTLED)
     figures = {
         "control.rms_error_um": error,
-        "control.tail_rms_error_um": errors(x[tail], model[tail], band)[0],
+        "control.tail_rms_error_um": last,
         "control.peak_error_um": peak,
         "control.settling_ms": float(settled) * dt,
-        "control.effort_rms_v": rms(u[tail]),
+        "control.effort_rms_v": effort,
     }
     step = last_step(r)
     before = float(model[step - 1]) if step else 0.0

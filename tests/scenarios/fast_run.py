@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from core.board.abreast import Abreast
+from core.board.lane_traces import LaneTraces
 from core.board.pattern import Pattern
 from core.board.pending import PendingQueue
 from core.compile.machine import WIDTH
@@ -86,7 +87,8 @@ def _read_out(scenario: Scenario, seeds: Sequence[int]) -> Iterator[dict[str, fl
     """Run boards abreast without a trace, and return what their read-outs have gathered."""
     pattern, specs = Pattern(build(scenario)), [scenario.spec.with_seed(seed) for seed in seeds]
     assert scenario.samples is not None
-    abreast = Abreast(pattern, specs, [PendingQueue() for _ in seeds], [], scenario.samples)
+    traces = LaneTraces(pattern.board.wiring, [], scenario.samples)
+    abreast = Abreast(pattern, specs, [PendingQueue() for _ in seeds], traces)
     assert all(abreast.run(scenario.samples))
     for board in abreast.boards:
         (name, section), *_ = board.spec.readouts.items()

@@ -60,6 +60,7 @@ def result(document: dict[str, Any], way: str) -> Result:
 
 def _abreast(scenario: Any) -> Result:
     from core.board.abreast import Abreast
+    from core.board.lane_traces import LaneTraces
     from core.board.pattern import Pattern, Uneven
     from scenarios.run import build
 
@@ -70,7 +71,8 @@ def _abreast(scenario: Any) -> Result:
     try:
         pattern = Pattern(boards[0])
         queues = [board.pending for board in boards]
-        lanes = Abreast(pattern, [board.spec for board in boards], queues, [], scenario.samples)
+        traces = LaneTraces(pattern.board.wiring, [], scenario.samples)
+        lanes = Abreast(pattern, [board.spec for board in boards], queues, traces)
         came = lanes.run(scenario.samples)
     except Uneven:
         return {}

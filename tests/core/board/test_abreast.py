@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core import registry
+from core import noise, registry
 from core.board.abreast import Abreast
 from core.board.board import Board
 from core.board.commands import parse_command
 from core.board.document import with_values
 from core.board.facts import unlike
+from core.board.lane_traces import LaneTraces
 from core.board.parse import parse
 from core.board.pattern import Pattern, Uneven
 from core.compile import code
@@ -41,7 +42,8 @@ def alone(document: dict[str, Any], events: list[dict[str, Any]]) -> Board:
 def together(documents: list[dict[str, Any]], events: list[list[dict[str, Any]]], names: list[str]) -> Abreast:
     boards = [waiting(Board(parse(document)), own) for document, own in zip(documents, events, strict=True)]
     pattern = Pattern(boards[0])
-    return Abreast(pattern, [board.spec for board in boards], [board.pending for board in boards], names, TICKS)
+    traces = LaneTraces(pattern.board.wiring, names, TICKS)
+    return Abreast(pattern, [board.spec for board in boards], [board.pending for board in boards], traces)
 
 
 EVENTS = [
@@ -63,15 +65,26 @@ def test_boards_with_seeds_of_their_own():
         assert abreast.trace(lane)["plant.displacement"][-1] == board.value("plant.displacement")
 
 
+def test_boards_that_share_a_queue_keep_changes_of_values_to_themselves():
+    """Commands that are not all for faults are carried out on each board: on the third one they change nothing."""
+    documents = [with_values(RICH, {"reference.amplitude_v": volts, "seed": 3}) for volts in (4.0, 5.0, 6.0)]
+    boards = [Board(parse(document)) for document in documents]
+    waiting(boards[0], EVENTS)
+    pattern = Pattern(boards[0])
+    traces = LaneTraces(pattern.board.wiring, [], TICKS)
+    abreast = Abreast(pattern, [board.spec for board in boards], [boards[0].pending] * 3, traces)
+    assert abreast.run(TICKS) == [True] * 3
+    assert [board.digest() for board in abreast.boards] == [alone(document, EVENTS).digest() for document in documents]
+
+
 def test_the_trace_of_each_board_is_its_trace_alone():
     """Also between the slices that are sorted together, and of sums of signals."""
     documents = [with_values(RICH, {"seed": seed}) for seed in range(1, 4)]
     faults = ["kalman.probability.m+5", "kalman.winner", "plant.displacement"]
     boards = [waiting(Board(document), EVENTS) for document in documents]
     specs, queues = [board.spec for board in boards], [board.pending.copy() for board in boards]
-    abreast = Abreast(
-        Pattern(boards[0]), specs, queues, ["drive.voltage", "sensor.displacement"], TICKS, {"sum": faults}
-    )
+    pattern, names = Pattern(boards[0]), ["drive.voltage", "sensor.displacement"]
+    abreast = Abreast(pattern, specs, queues, LaneTraces(pattern.board.wiring, names, TICKS, {"sum": faults}))
     abreast.run(TICKS)
     for lane, document in enumerate(documents):
         board = waiting(Board(document), EVENTS)
@@ -127,8 +140,11 @@ def test_what_a_block_reads_is_alike_to_the_sign_of_a_zero():
     assert unlike(context, spec.with_seed(9).context()) == {"seed"}
     assert unlike(replace(context, limit_un=0.0), replace(context, limit_un=-0.0)) == {"limit_un"}
     pattern = Pattern(Board(spec))
-    ideal, effects = (pattern.read[pattern.board.wiring.row(key)] for key in ("ideal", "effects"))
-    assert ideal == {"seed"} and not effects
+    wiring = pattern.board.wiring
+    plant, ideal, effects = (pattern.read[wiring.row(key)] for key in ("plant", "ideal", "effects"))
+    assert "device" in plant and "seed" not in plant and ideal == effects == set()
+    assert {"plant.drive", "sensor"} <= {stream for _, stream in pattern.streams}
+    assert all(wiring.p[place] == noise.key(spec.seed, stream) for place, stream in pattern.streams)
 
 
 def test_two_axes_and_their_controllers():

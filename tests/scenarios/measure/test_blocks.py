@@ -19,7 +19,7 @@ from scenarios.measure.blocks import (
     total,
     width,
 )
-from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
+from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing, tracked
 from scenarios.measure.metrics import fundamental
 from scenarios.measure.rate import bandwidth_hz
 
@@ -61,6 +61,16 @@ def test_samples_are_counted_over_the_ends_of_blocks(column, at):
     moved = column(np.zeros(LONG))
     error, peak, settled = errors(column(np.where(np.arange(LONG) < at, 0.5, 0.0)), moved, 0.1)
     assert (peak, settled) == (0.5, at) and error == pytest.approx(0.5 * np.sqrt(at / LONG))
+
+
+def test_errors_of_a_long_run_and_of_its_tail(column):
+    x, model, u = np.random.default_rng(2).normal(size=(3, LONG))
+    whole, peak, settled, last, effort = tracked(column(x), column(model), column(u), 10, BLOCK - 5, 0.5)
+    error, band = x - model, 0.5 * np.max(np.abs(model[BLOCK - 5 :]))
+    assert whole == pytest.approx(np.sqrt(np.mean(error[10:] ** 2)), rel=1e-12) and peak == np.max(np.abs(error[10:]))
+    assert settled == np.flatnonzero(np.abs(error[10:]) > band)[-1] + 1
+    assert last == pytest.approx(np.sqrt(np.mean(error[BLOCK - 5 :] ** 2)), rel=1e-12)
+    assert effort == pytest.approx(np.sqrt(np.mean(u[BLOCK - 5 :] ** 2)), rel=1e-12)
 
 
 @pytest.mark.parametrize("turn", [5, BLOCK - 2, BLOCK - 1, BLOCK, BLOCK + 1])

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenarios.campaign.outcome import EVIDENCE, LEAST, ODDS, evidence
-from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing
+from scenarios.measure.errors import errors, first_peaks, last_step, rms, swing, tracked
 from scenarios.measure.metrics import first_peak, fundamental
 
 SIGNALS = st.integers(0, 2**32 - 1).map(lambda seed: np.random.default_rng(seed))
@@ -24,6 +24,14 @@ def test_errors_are_those_of_numpy(rng, band):
     outside = np.flatnonzero(np.abs(error) > band)
     assert settled == (outside[-1] + 1 if len(outside) else 0)
     assert swing(x) == np.max(np.abs(x))
+
+
+@given(SIGNALS, st.floats(0.0, 0.5), st.integers(0, 56), st.integers(0, 56))
+def test_one_pass_has_the_bits_of_each_figure_alone(rng, share, start, tail):
+    x, model, u = rng.normal(size=(3, 57))
+    band = share * swing(model[tail:])
+    alone = *errors(x[start:], model[start:], band), errors(x[tail:], model[tail:], band)[0], rms(u[tail:])
+    assert tracked(x, model, u, start, tail, share) == alone
 
 
 def test_what_is_not_a_number_is_no_small_error():
