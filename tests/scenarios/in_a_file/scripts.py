@@ -6,6 +6,7 @@ import importlib.util
 import json
 import shutil
 import subprocess
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from scenarios.run import build
 from scenarios.schema import Scenario
 
 WEB = Path(__file__).resolve().parents[3] / "web"
+QUIET = ("warning", "scheduled")
 SLICES = [1, 512, 37, 1000, 4096, 16]
 
 
@@ -58,8 +60,8 @@ class Bout:
             if board.tick < ticks and _does(board, command):
                 played.append([board.tick, command])
         script = {"ticks": board.tick if board.trip is None else ticks, "slices": SLICES, "commands": played}
-        kinds = [entry.kind for entry in board.log if entry.kind not in ("warning", "scheduled")]
-        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.signals)].view(np.uint64))
+        kinds = kinds_of(entry.model_dump() for entry in board.log)
+        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.wiring.signals)].view(np.uint64))
         return script, {
             "digest": board.digest(),
             "bits": bits,
@@ -67,6 +69,11 @@ class Bout:
             "kinds": kinds,
             "tripped": board.trip is not None,
         }
+
+
+def kinds_of(log: Iterable[dict[str, Any]]) -> list[tuple[int, str]]:
+    """Return the ticks and kinds of entries that a file has too; a twin notes its own after each slice."""
+    return sorted((entry["tick"], entry["kind"]) for entry in log if entry["kind"] not in QUIET)
 
 
 def bits_alike(bits: Any) -> list[int]:
@@ -90,7 +97,7 @@ def _drawn(rng: np.random.Generator, document: dict[str, Any], board: Board) -> 
     if kind == "heal" and board.faults:
         return {"heal": [str(rng.choice([*board.faults]))]}
     if kind == "switch":
-        name = str(rng.choice([*document["wirings"]["slots"]]))
+        name = str(rng.choice(_switches(document, board)))
         return {"switch": name, "cold": True} if rng.random() < 0.3 else {"switch": name}
     if kind == "set" and document["values"]:
         path = str(rng.choice([*document["values"]]))
@@ -102,6 +109,16 @@ def _drawn(rng: np.random.Generator, document: dict[str, Any], board: Board) -> 
     low, high = gentle * fault["low"], gentle * fault["high"]
     severity = _value(rng, fault["variants"][0]["dependence"], low, high)
     return {"fault": name, "severity": severity or fault["suggested"]}
+
+
+def _switches(document: dict[str, Any], board: Board) -> list[str]:
+    """Return the controllers that the file can switch to now."""
+    wirings, now = document["wirings"], board.spec.driving
+    return [
+        name
+        for name, slot in wirings["slots"].items()
+        if "+".join({**now, slot: name}.values()) in wirings["writes"]["p"]["numbers"]
+    ]
 
 
 def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, high: float) -> float:

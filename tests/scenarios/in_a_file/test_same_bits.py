@@ -7,7 +7,7 @@ import pytest
 from core.errors import InputError
 from scenarios.in_a_file.bench_file import bench_file, refusal
 from scenarios.library import get, library
-from tests.scenarios.in_a_file.scripts import Bout, bits_alike, in_files
+from tests.scenarios.in_a_file.scripts import Bout, bits_alike, in_files, kinds_of
 
 MANY = (
     "first-look",
@@ -26,7 +26,6 @@ MANY = (
     "gyro-whole-angle",
 )
 TICKS, COMMANDS = 3000, 14
-QUIET = ("warning", "scheduled")
 
 
 def _compare(name: str, count: int) -> None:
@@ -38,7 +37,7 @@ def _compare(name: str, count: int) -> None:
         assert found["refused"] == [], script
         assert (found["digest"], found["tick"]) == (native["digest"], native["tick"]), script
         assert bits_alike([*map(int, found["bits"])]) == native["bits"], script
-        assert [entry["kind"] for entry in found["log"] if entry["kind"] not in QUIET] == native["kinds"], script
+        assert kinds_of(found["log"]) == native["kinds"], script
 
 
 @pytest.mark.parametrize("name", ["gyro-waveform"])

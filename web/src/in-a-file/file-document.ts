@@ -87,15 +87,15 @@ export interface FileDiagnoser {
   factors: Record<string, number>[];
 }
 
-/** All that a bench in a file knows besides its code. */
-export interface FileDocument {
-  id: string;
-  title: string;
-  summary: string;
-  absent: string;
-  version: string;
+export interface FileSignal {
+  name: string;
+  unit: string;
+  meaning: string;
+}
+
+/** All that a board in a file knows besides its code. */
+export interface BoardDocument {
   dt_ms: number;
-  seed: number;
   arrays: { table: BigInt64Array; p: Float64Array; s: Float64Array; w: Float64Array; io: BigInt64Array };
   running: number[];
   rows: FileRow[];
@@ -117,7 +117,7 @@ export interface FileDocument {
   reasons: { tripped: number; watched: number; changed: number };
   outputs: number;
   reserved: number;
-  signals: { name: string; unit: string; meaning: string }[];
+  signals: FileSignal[];
   blocks: string[];
   trip: number;
   guards: number[];
@@ -136,9 +136,29 @@ export interface FileDocument {
   values: Record<string, FileValue>;
   sensors: { all: string[]; measuring: string };
   controllers: Record<string, string>;
-  events: FileEvent[];
   /** The entries of the log before the first tick. */
   log: Omit<FileEntry, "seq">[];
+}
+
+/** A twin: the columns that are seen, and the controllers and values that commands to the bench do not reach. */
+export interface TwinDocument extends BoardDocument {
+  shown: number[];
+  own_switches: string[];
+  own_values: string[];
+}
+
+/** All that a bench in a file knows besides its code. */
+export interface FileDocument extends BoardDocument {
+  id: string;
+  title: string;
+  summary: string;
+  absent: string;
+  version: string;
+  seed: number;
+  events: FileEvent[];
+  /** Commands that have taken effect before the first tick, which the twins carry out at it. */
+  done: [number, FileCommand][];
+  twins: Record<string, TwinDocument>;
 }
 
 export type FileEntry = Pick<LogEntry, "seq" | "tick" | "actor" | "kind" | "text" | "old" | "new"> & {

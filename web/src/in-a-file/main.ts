@@ -31,8 +31,9 @@ async function show(): Promise<void> {
     await bytesOf(textOf("code")),
     unpacked<FileDocument>(await bytesOf(textOf("pack"))),
   );
-  const { title, summary, absent, dt_ms: dtMs, diagnosers, version } = bench.document;
-  teachWords(bench.document);
+  const { title, summary, absent, dt_ms: dtMs, version } = bench.document;
+  const { diagnosers } = bench;
+  teachWords(bench);
   const pace = new Pace(dtMs, USUAL_SCALE);
   const time = new TimeWindow(bench, windowOf(dtMs));
   const notice = element("p", { className: "notice", role: "alert" });
@@ -51,7 +52,7 @@ async function show(): Promise<void> {
     tellAll();
   };
   const bar = new RunBar(bench, pace, time, act);
-  const scopes = scopesOf(bench.document.signals).map((title) => new ScopeView(bench, time, title));
+  const scopes = scopesOf(bench.signals).map((title) => new ScopeView(bench, time, title));
   const scored = Object.keys(diagnosers).filter((id) => diagnosers[id].scored);
   const lanes = scored.length > 0 ? new LanesView(bench, time, scored) : undefined;
   const controllers = new ControllerChoice(bench, act);
@@ -114,7 +115,7 @@ async function show(): Promise<void> {
 }
 
 /** The presets of the two scopes: displacement and voltage, as far as the bench has them, else the first presets. */
-function scopesOf(signals: FileDocument["signals"]): string[] {
+function scopesOf(signals: FileBench["signals"]): string[] {
   const titles = presetsOn(signals).map(({ title }) => title);
   const usual = ["Displacement", "Voltage"].filter((title) => titles.includes(title));
   return [...new Set([...usual, ...titles])].slice(0, 2);
