@@ -16,6 +16,7 @@ from core.wasm.module import module_of
 from scenarios.in_a_file.board_file import board_document
 from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.kernels import KERNELS
+from scenarios.in_a_file.supervisor_table import refused_supervisor
 from scenarios.in_a_file.writes import MAIN, Writes, described
 from scenarios.run import build
 from scenarios.schema import Scenario
@@ -40,11 +41,11 @@ def refusal(scenario: Scenario) -> str:
     specs = [scenario.spec, *scenario.twins.values()]
     reasons = {
         "it is a study, a computation without a bench": scenario.study,
-        "it has a supervisor, whose acts are computed in Python": any(spec.supervisors for spec in specs),
         "its plant is a record, which is no part of a file": any(spec.record is not None for spec in specs),
         "it has a unit in a text, which is compiled on a server": any(spec.library.units for spec in specs),
     }
-    return next((text for text, holds in reasons.items() if holds), "")
+    found = [text for text, holds in reasons.items() if holds]
+    return next(iter(found or filter(None, map(refused_supervisor, specs))), "")
 
 
 def bench_file(scenario: Scenario) -> BenchFile:
@@ -77,6 +78,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
                 "present": present[name],
                 "wirings": wirings[name],
                 "values": values[name],
+                "supervisor": writes.supervisors[name],
             },
             ticks,
         )

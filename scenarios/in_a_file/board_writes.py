@@ -136,22 +136,23 @@ class BoardWrites:
 
     # -- values
 
-    def span(self, row: int) -> range:
-        """Return the places of the numbers of a row."""
-        first = int(self.wiring.table[row, 1])
-        return range(first, first + len(self.wiring.packed(row)))
+    def places_of_faults(self) -> set[int]:
+        """Return the places of the numbers of all faults."""
+        rows = [row for row, one in enumerate(self.wiring.instances) if one.key.startswith("faults.")]
+        begins = {row: int(self.wiring.table[row, 1]) for row in rows}
+        return {at for row in rows for at in range(begins[row], begins[row] + len(self.wiring.packed(row)))}
 
-    def with_value(self, path: str, value: float) -> Wiring:
-        """Return the wiring of the board with a value."""
+    def with_values(self, values: dict[str, Any]) -> Wiring:
+        """Return the wiring of the board with other values by path."""
         wiring = copy.deepcopy(self.wiring)
-        if not change(wiring, self.spec, live_change(self.spec, {path: value})[0]):
+        if not change(wiring, self.spec, live_change(self.spec, values)[0]):
             raise InputError("makes another wiring")
         return wiring
 
-    def check_value(self, path: str, value: float) -> None:
-        """Refuse a value that writes more than parameters, or on which a first state depends."""
-        wiring = self.with_value(path, value)
-        fresh = wire(live_change(self.spec, {path: value})[0], wiring)
+    def check_values(self, values: dict[str, Any]) -> None:
+        """Refuse values that write more than parameters, or on which a first state depends."""
+        wiring = self.with_values(values)
+        fresh = wire(live_change(self.spec, values)[0], wiring)
         same = [is_same(getattr(wiring, name), getattr(self.wiring, name)) for name in ("io", "w", "table")]
         if not all(same) or wiring.absent != self.wiring.absent or wiring.unread != self.wiring.unread:
             raise InputError("other blocks run")

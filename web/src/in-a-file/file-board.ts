@@ -3,6 +3,7 @@ import { carryOut } from "./carry-out";
 import type { BoardDocument, FileCommand, FileEntry, FileEvent } from "./file-document";
 import { Findings } from "./findings";
 import { digestOf } from "./sha";
+import { obey } from "./supervise";
 
 export interface FileTrip {
   tick: number;
@@ -22,6 +23,8 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
   faults = new Map<string, { severity: number; variant: number; since: number }>();
   driving: Record<string, string> = {};
   values: Record<string, number> = {};
+  /** The values that the supervisor sets, as they are now. */
+  supervised: Record<string, unknown> = {};
   running = new Set<number>();
   /** The commands that have taken effect, each with its tick. */
   done: [number, FileCommand][] = [];
@@ -50,6 +53,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
     this.used = new Set();
     this.driving = { ...wirings.driving };
     this.values = Object.fromEntries(Object.entries(values).map(([path, { value }]) => [path, value]));
+    this.supervised = this.document.supervisor?.values ?? {};
     this.pending = events.map((event) => ({ ...event }));
     this.running = new Set(running);
     this.arrays.link(this.running);
@@ -60,12 +64,13 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
   advance(n: number): number {
     const first = this.tick;
     const end = first + n;
-    const { look_every: every, reasons, sensors } = this.document;
+    const { look_every: every, reasons, sensors, supervisor } = this.document;
     while (this.tick < end) {
       this.applyDue();
       if (this.trip) break;
       const stop = Math.min(end, this.tick - (this.tick % every) + every, this.upcoming);
-      const watched = this.pending.flatMap(({ tick, when }) => (when && tick === null ? [when] : []));
+      const watched: number[][] = this.pending.flatMap(({ tick, when }) => (when && tick === null ? [when] : []));
+      if (supervisor) watched.push([supervisor.place, 1, 0.5]);
       const { ran, why } = this.arrays.run(stop - this.tick, this.tick, watched);
       if (why !== 0) this.tell(this.tick + ran - 1);
       for (const name of [...Object.values(this.driving), sensors.measuring]) this.used.add(name);
@@ -82,6 +87,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
 
   /** Let a command take effect at this tick edge. */
   apply(command: FileCommand, actor = "you"): void {
+    this.obey();
     const { kind, text, old, now } = carryOut(this, command);
     this.done.push([this.tick, command]);
     this.note({ actor, kind, text, command, old, new: now });
@@ -130,6 +136,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
 
   /** Carry out the commands due at this tick. */
   applyDue(): void {
+    this.obey();
     const due = this.pending.filter(({ tick }) => tick !== null && tick <= this.tick);
     if (due.length === 0) return;
     this.pending = this.pending.filter((event) => !due.includes(event));
@@ -161,14 +168,24 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
       this.note({ actor: "board", ...finding }, tick);
   }
 
+  /** Carry out what the supervisor requests, before any command at this tick: a consequence of the samples. */
+  private obey(): void {
+    for (const { kind, text, old, now } of obey(this)) this.note({ actor: "supervisor", kind, text, old, new: now });
+  }
+
   private cause(): string {
     const code = this.document.guards.map((place) => this.arrays.w.view[place]).find((value) => value !== 0);
     return this.document.trip_reasons[String(code)] ?? "a guard stopped the board";
   }
 
-  private stop(reason: string): void {
+  /** Trip at this tick for a reason that no signal shows. */
+  makeSafe(reason: string): void {
     this.trip = { tick: this.tick, reason };
     for (const place of this.document.disengaged) this.arrays.w.view[place] = 0;
+  }
+
+  private stop(reason: string): void {
+    this.makeSafe(reason);
     this.note({ actor: "board", kind: "tripped", text: `tripped: ${reason}`, old: null, new: null });
   }
 

@@ -1,4 +1,4 @@
-import type { LogEntry } from "../api/types";
+import type { LogEntry, PrintedMark } from "../api/types";
 
 /** How the numbers at some places follow a value: as its multiples, or by the points of a grid. */
 export interface Dependence {
@@ -87,6 +87,16 @@ export interface FileDiagnoser {
   factors: Record<string, number>[];
 }
 
+/** What a supervisor may request, by the number of the request; the place of this number, and the values it sets. */
+export interface FileSupervisor {
+  place: number;
+  values: Record<string, unknown>;
+  places: BigInt64Array;
+  requests: { act: FileAct; numbers?: Float64Array }[][];
+}
+
+export type FileAct = { switch: string; cold?: boolean } | { set: Record<string, unknown> } | { make_safe: string };
+
 export interface FileSignal {
   name: string;
   unit: string;
@@ -134,6 +144,7 @@ export interface BoardDocument {
     writes: { p: WiringWrites<Float64Array>; io: WiringWrites<BigInt64Array>; w: WiringWrites<Float64Array> };
   };
   values: Record<string, FileValue>;
+  supervisor: FileSupervisor | null;
   sensors: { all: string[]; measuring: string };
   controllers: Record<string, string>;
   /** The entries of the log before the first tick. */
@@ -159,6 +170,42 @@ export interface FileDocument extends BoardDocument {
   /** Commands that have taken effect before the first tick, which the twins carry out at it. */
   done: [number, FileCommand][];
   twins: Record<string, TwinDocument>;
+  /** The run whose figures and digest are published. */
+  published?: FilePublished;
+  /** The address of the list of pages that this page is one of. */
+  index?: string;
+  sheet?: FileSheet;
+}
+
+export interface FilePublished {
+  source: string;
+  claim: string;
+  verdict: string;
+  ticks: number;
+  digest: string;
+  expectations: { metric: string; published: string; expected: string; measured: string; ok: boolean }[];
+  marks: PrintedMark[];
+}
+
+export interface FileQuestion {
+  heading: string;
+  text: string;
+  question: string;
+  points: number;
+  tries: number;
+  value: number;
+  unit: string;
+  within: number;
+  within_absolute: number;
+  partly: { within: number; share: number } | null;
+}
+
+/** The questions of a lab sheet that a file can judge, and a line about the other steps. */
+export interface FileSheet {
+  title: string;
+  intro: string;
+  questions: FileQuestion[];
+  rest: string;
 }
 
 export type FileEntry = Pick<LogEntry, "seq" | "tick" | "actor" | "kind" | "text" | "old" | "new"> & {

@@ -73,6 +73,7 @@ export class ScopeView {
       const style = traceStyle(name, all, hypotheses);
       return { name, unit, ...style, colour: traceColour(style, this.scheme) };
     });
+    const marks = (this.bench.document.published?.marks ?? []).filter(({ signal }) => names.includes(signal));
     this.plot?.destroy();
     this.plot = new ScopePlot({
       host: this.host,
@@ -81,7 +82,7 @@ export class ScopeView {
       lineWidth: LINE_PX,
       fontSize: FONT_PX,
       marks: () => this.marks(),
-      printed: () => [],
+      printed: () => marks,
       isLog: false,
       isShaded: () => false,
       ghost: () => undefined,
