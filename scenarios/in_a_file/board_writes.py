@@ -63,7 +63,7 @@ class BoardWrites:
     # -- faults
 
     def fault(self, name: str, command: Inject) -> dict[str, Any]:
-        """Return the places of a fault; refuse one that writes more than its own numbers."""
+        """Return the places of a fault; refuse a fault that writes more than its own numbers."""
         row = self.wiring.row(f"faults.{name}")
         block = self.wiring.instances[row].block
         self._check_fault(row, command)

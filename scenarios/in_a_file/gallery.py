@@ -59,13 +59,13 @@ def write_gallery(
     folder : Path
         Made if it is not there; files of these names are replaced.
     chosen : iterable of Scenario
-        Scenarios; those that cannot be a file are named in the index.
+        Scenarios; the index names the scenarios that cannot be a file.
     built : BuiltPage
         Script and style sheet, which all pages share.
     version : str
         Of this project.
     say : callable
-        Told a line for each page.
+        Takes a line for each page.
     """
     folder.mkdir(parents=True, exist_ok=True)
     pages: list[tuple[Scenario, dict[str, Any]]] = []

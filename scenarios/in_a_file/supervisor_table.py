@@ -1,7 +1,7 @@
 """A supervisor as a table: for each request the switch, the numbers or the trip that it asks for.
 
-A supervisor has such a table if its acts follow from the number of its request alone. An act may also depend on signals:
-a law that is set to an estimate has numbers that only the packing in Python computes.
+A supervisor has such a table if its acts follow from the number of its request alone. An act may also depend on
+signals: a law that is set to an estimate has numbers that only the packing in Python computes.
 """
 
 from __future__ import annotations
@@ -101,6 +101,12 @@ def supervisor_table(board: BoardWrites) -> dict[str, Any] | None:
             for number, acts in enumerate(requests, 1)
         ],
     }
+
+
+def supervisor_switches(table: dict[str, Any] | None) -> list[str]:
+    """Return the controllers that a supervisor switches to."""
+    acts = [one["act"] for acts in (table or {}).get("requests", []) for one in acts]
+    return [act["switch"] for act in acts if "switch" in act]
 
 
 def _described(command: Switch | SetValues | MakeSafe) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from core.errors import InputError
 from core.faults.fault import FaultParams, Profile
 from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.dependence import dependence
-from scenarios.in_a_file.supervisor_table import supervisor_table
+from scenarios.in_a_file.supervisor_table import supervisor_switches, supervisor_table
 from scenarios.knobs import usual_range
 from scenarios.schema import Scenario
 
@@ -135,6 +135,9 @@ class Writes:
         for name, table in self.supervisors.items():
             if table is not None and {*table["places"].tolist()} & {*found[name]["writes"]["p"]["places"].tolist()}:
                 raise InputError("a switch of the controller writes the numbers that it sets", "supervisor")
+            for act in supervisor_switches(table):
+                if act in self.boards[name].blocked:
+                    raise InputError(f"its file cannot switch to {act}", "supervisor")
         main, *twins = self.boards.values()
         blocked = {
             controller: reason

@@ -52,7 +52,7 @@ def lectures(
 
 
 def sheet_named(name: str, option: str) -> Sheet:
-    """Return a sheet of the library by its id, or one of one's own by its file."""
+    """Return a sheet of the library by its id, or another sheet by its file."""
     from scenarios import sheets as library
     from scenarios.sheets.check import check
 

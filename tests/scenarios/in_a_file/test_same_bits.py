@@ -109,20 +109,20 @@ def test_one_packed_number_changed_gives_another_digest():
 
 
 def test_a_twin_that_rests_has_no_numbers_and_the_past_of_all_boards_is_the_native_past():
-    bout = Bout.of(with_values(get("ch5-short-circuit"), {"diagnosers": {}}))
+    bout = Bout.of(with_values(get("ch3-stvsc-pull-in"), {"diagnosers": {}}))
     board = Board.restore(bout.start)
     rows = []
-    while board.tick < 2600 and (ran := board.advance(512)).count:
+    while board.tick < 400 and (ran := board.advance(200)).count:
         rows.append(np.hstack([ran.outputs, ran.taps]))
     native = np.vstack(rows).astype(np.float32)
     assert np.isnan(native[-1]).any() and not np.isnan(native[-1, 0])
     columns = [k for k, signal in enumerate(board.signals) if signal.name.endswith(("displacement", "drive.voltage"))]
-    seen = {"signals": columns, "ticks": 1500}
+    seen = {"signals": columns, "ticks": 300}
     script = {"ticks": board.tick, "slices": SLICES, "commands": [], "seen": seen}
     ((found,),) = in_node(jobs_of([bout], [[script]]))
-    traces = np.array(found["trace"], dtype=np.uint32).view(np.float32).reshape(len(columns), 2, 1500)
-    np.testing.assert_array_equal(traces[:, 0], native[-1500:, columns].T)
-    np.testing.assert_array_equal(traces[:, 1], native[-1500:, columns].T)
+    traces = np.array(found["trace"], dtype=np.uint32).view(np.float32).reshape(len(columns), 2, 300)
+    np.testing.assert_array_equal(traces[:, 0], native[-300:, columns].T)
+    np.testing.assert_array_equal(traces[:, 1], native[-300:, columns].T)
 
 
 def test_slow_blocks_and_conditions_of_events_are_in_a_file():

@@ -4,7 +4,7 @@ import { Course, type CourseApi, courseAround } from "./course";
 import type { FileQuestion } from "./file-document";
 import { QuestionList, shareOf } from "./question-list";
 
-/** A learning system that keeps what it is told. */
+/** A learning system that keeps all values. */
 class StubCourse implements CourseApi {
   readonly values: Record<string, string> = { "cmi.core.lesson_status": "not attempted" };
   readonly calls: string[] = [];

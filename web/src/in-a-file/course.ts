@@ -30,7 +30,7 @@ function above(page: Frame): CourseApi | undefined {
   return undefined;
 }
 
-/** The course that a page is a part of: it is told the status, and the points in percent. */
+/** The course around a page, which takes the status and the points in percent. */
 export class Course {
   private readonly api: CourseApi;
   private isOpen: boolean;

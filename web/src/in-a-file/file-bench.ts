@@ -128,7 +128,7 @@ export class FileBench extends FileBoard<FileDocument> {
   }
 }
 
-/** Let a twin carry out a command of the board at the same tick, except for what it has of its own. */
+/** Let a twin carry out a command of the board at the same tick, except for values and controllers of its own. */
 function mirror(twin: FileBoard<TwinDocument>, tick: number, command: FileCommand): void {
   const { own_switches: ownSwitches, own_values: ownValues } = twin.document;
   if ("switch" in command && ownSwitches.includes(command.switch)) return;

@@ -93,10 +93,17 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
     this.note({ actor, kind, text, command, old, new: now });
   }
 
-  /** Let a command take effect at a tick; a command that is not allowed has no effect. */
+  /** Let a command take effect at a tick, now or later; a command that is not allowed has no effect. */
   await(tick: number, command: FileCommand): void {
-    this.pending.push({ tick, command });
-    if (tick <= this.tick) this.applyDue();
+    if (tick > this.tick) {
+      this.pending.push({ tick, command });
+      return;
+    }
+    try {
+      this.apply(command, "scenario");
+    } catch {
+      // such as a heal of the cause of a trip
+    }
   }
 
   /** Write an entry of the log. */
@@ -168,7 +175,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
       this.note({ actor: "board", ...finding }, tick);
   }
 
-  /** Carry out what the supervisor requests, before any command at this tick: a consequence of the samples. */
+  /** Carry out the request of the supervisor, before any command at this tick: a consequence of the samples. */
   private obey(): void {
     for (const { kind, text, old, now } of obey(this)) this.note({ actor: "supervisor", kind, text, old, new: now });
   }

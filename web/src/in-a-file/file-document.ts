@@ -87,7 +87,7 @@ export interface FileDiagnoser {
   factors: Record<string, number>[];
 }
 
-/** What a supervisor may request, by the number of the request; the place of this number, and the values it sets. */
+/** The acts of a supervisor by the number of its request, the place of this number, and the values that they set. */
 export interface FileSupervisor {
   place: number;
   values: Record<string, unknown>;

@@ -136,10 +136,12 @@ function enterCourse(sheet: FileSheet | undefined): Course | undefined {
   return course;
 }
 
-/** The presets of the two scopes: displacement and voltage, as far as the bench has them, else the first presets. */
+/** The presets of the two scopes: displacement and voltage, with twins if there are any; else the first presets. */
 function scopesOf(signals: FileBench["signals"]): string[] {
   const titles = presetsOn(signals).map(({ title }) => title);
-  const usual = ["Displacement", "Voltage"].filter((title) => titles.includes(title));
+  const usual = ["Displacement", "Voltage"].flatMap(
+    (name) => titles.find((title) => title === `${name} with twins`) ?? titles.find((title) => title === name) ?? [],
+  );
   return [...new Set([...usual, ...titles])].slice(0, 2);
 }
 

@@ -7,7 +7,7 @@ const DIGEST = "0123456789abcdef0123";
 const published = { source: "3.1", claim: "It tracks.", verdict: "reproduced", ticks: 1300, digest: DIGEST, marks: [] };
 const row = { metric: "control.rms_error_um", published: "small", expected: "at most 2", measured: "1 um", ok: true };
 
-/** A bench that counts ticks, and stops at one if it is told to. */
+/** A bench that counts ticks, up to a last tick. */
 class CountingBench {
   tick = 77;
   readonly found: string;

@@ -9,7 +9,7 @@ export class QuestionList {
   private readonly sheet: FileSheet;
   private readonly onScore: (percent: number, isDone: boolean) => void;
 
-  /** `onScore` is told the points in percent, and whether all questions are closed, after each answer. */
+  /** `onScore` takes the points in percent, and whether all questions are closed, after each answer. */
   constructor(sheet: FileSheet, onScore: (percent: number, isDone: boolean) => void) {
     this.sheet = sheet;
     this.onScore = onScore;

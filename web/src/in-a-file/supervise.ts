@@ -3,7 +3,7 @@ import type { FileBoard } from "./file-board";
 
 const differs = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
 
-/** Take the request of the supervisor that is not carried out yet, and carry out what it changes. */
+/** Take the request of the supervisor that is not carried out yet, and carry out the changes. */
 export function obey(board: FileBoard): Done[] {
   const { supervisor } = board.document;
   const { p, w } = board.arrays;
