@@ -56,7 +56,7 @@ class BoardWrites:
 
     def keeps_own(self, command: Command) -> bool:
         """Say whether a command of the main board is for a value that the twin has for itself."""
-        if isinstance(command, Switch):
+        if isinstance(command, Switch) and command.switch in self.spec.controllers:
             return any(path in self._own for path in changes.switched(self.spec, command))
         return isinstance(command, SetValues) and all(is_own(path, self._own) for path in command.set)
 
