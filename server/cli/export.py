@@ -45,7 +45,8 @@ def export(
         Path | None, typer.Option(metavar="FILE", help="Write a package of SCORM 1.2 for a course.")
     ] = None,
     sheet: Annotated[
-        str | None, typer.Option(metavar="SHEET", help="With --scorm: a lab sheet, by its id or file, with its bench.")
+        str | None,
+        typer.Option("--sheet", metavar="ID", help="With --scorm: a lab sheet, by its id or file, with its bench."),
     ] = None,
     gallery: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write the library as live pages with an index, for any host.")

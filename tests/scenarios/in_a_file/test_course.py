@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import xml.etree.ElementTree as ET
 import zipfile
 
@@ -41,8 +42,8 @@ def test_the_numbers_of_a_sheet_are_right_for_the_bench_in_the_file():
     found = file_sheet(get("resonance-and-q"))
     asked = {one["question"]: one for one in found.document["questions"]}
     frequency = asked["What is the resonance frequency?"]
-    mass, stiffness = found.scenario.spec.device.mass_kg, found.scenario.spec.device.stiffness_n_m
-    assert frequency["value"] == pytest.approx((stiffness / mass) ** 0.5 / 6.283185307179586, rel=1e-6)
+    device = found.scenario.spec.context().device  # in mg and uN/um, so that times are in ms
+    assert frequency["value"] == pytest.approx(1e3 * (device.stiffness / device.mass) ** 0.5 / math.tau, rel=1e-6)
     assert file_sheet(get("resonance-and-q")).document == found.document
     step = next(one for one in get("resonance-and-q").steps if one.id == "f0")
     assert isinstance(step, Answered)
@@ -66,9 +67,8 @@ def test_a_file_has_no_question_with_few_choices_and_no_hidden_fault(name: str):
     left = len(sheet.steps) - len(found.document["questions"])
     assert found.document["rest"].startswith(f"{left} other step") if left else not found.document["rest"]
     library = get_scenario(sheet.head.bench.scenario)
-    assert [found.scenario.document.get(key) for key in ("events", "faults")] == [
-        library.document.get(key) for key in ("events", "faults")
-    ]
+    assert found.scenario.document.get("faults") == library.document.get("faults")
+    assert found.scenario.document.get("events") in ([], library.document.get("events"))
     assert not {"mistakes", "choice", "options", "solution"} & {
         key for one in found.document["questions"] for key in one
     }

@@ -144,7 +144,7 @@ def test_a_supervisor_with_a_table_acts_at_the_same_ticks():
     bout = Bout.of(with_values(get("ch5-redesign"), {"samples": 3000}))
     board = Board.restore(bout.start)
     while board.tick < 3000:
-        board.advance(512)
+        board.advance(500)
     acted = [one.tick for twin in board.twins.values() for one in twin.consequences]  # type: ignore[attr-defined]
     assert acted
     script = {"ticks": 3000, "slices": SLICES, "commands": []}
