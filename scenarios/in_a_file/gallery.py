@@ -37,7 +37,7 @@ dress();
 </script>
 <header>
 <h1>Live exhibits</h1>
-<p>Each of these {count} pages is a bench that your browser computes. Inject faults, switch controllers, or compute the
+<p>Each of these pages is a bench that your browser computes. Inject faults, switch controllers, or compute the
 published run anew: the page compares its digest, a hash of every sample, with the published digest.</p>
 </header>
 {sections}
@@ -99,7 +99,6 @@ def _index(pages: list[tuple[Scenario, dict[str, Any]]], refused: list[tuple[str
     return INDEX.format(
         policy=SHARED_POLICY,
         style=STYLE,
-        count=len(pages),
         sections="\n".join(sections),
         version=html.escape(version),
         missing=html.escape(" ".join(missing)),
