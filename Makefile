@@ -17,7 +17,7 @@ KERNEL_SOURCE := $(shell find core scenarios -name __pycache__ -prune -o -print)
 PAGE_SOURCE   := $(shell find web -name node_modules -prune -o -name dist -prune -o -name e2e -prune -o -name testing -prune -o \
                    -mindepth 1 -not -name '*.test.ts*' -not -name '*.tsbuildinfo' -print)
 
-.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed wheel image docs audit codegen digests lock clean help
+.PHONY: run classroom setup first-kernels test test-all flakes mutations check fix dev bench load class-load soak page-speed exhibit wheel image docs audit codegen digests lock clean help
 
 run: $(PYTHON_STAMP)  ## Set everything up, serve the bench on http://127.0.0.1:8000 and print the link to open
 	@$(MAKE) --no-print-directory -j2 $(PAGE) first-kernels $(LOADED_STAMP)
@@ -65,6 +65,9 @@ class-load: setup  ## A class of 30 students and 60 watchers: joining, effects, 
 
 soak: setup  ## Eight benches and watchers for 30 minutes: memory and timing must stay flat
 	@.venv/bin/python scripts/load.py pages --benches 8 --watchers 8 --seconds 1800 --flat $(ARGS)
+
+exhibit: setup  ## Write the library as live pages into exhibit/, a folder for any static host (ARGS=ch3-*: these)
+	@.venv/bin/combbench export --gallery exhibit $(ARGS)
 
 wheel: $(PAGE) docs  ## Build a wheel with the page, the documents, and machine code for x86-64-v2, x86-64-v3 and aarch64 Linux
 	@.venv/bin/uv build --wheel --no-build-isolation --quiet --out-dir dist

@@ -1,4 +1,4 @@
-"""Write the generated parts of the documents: settings, commands, and the picture of the layers.
+"""Write the generated parts of the documents: settings, commands, refused scenarios, and the picture of the layers.
 
 ``write_documents.py`` renews them in ``docs/``; ``make codegen`` runs it, and a test holds the files to its output.
 """
@@ -13,11 +13,14 @@ from typing import Any
 
 import typer
 
+from scenarios.in_a_file.bench_file import refusal
+from scenarios.library import library
 from server.cli.main import app
 from server.settings import Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 SETTINGS, COMMANDS, PICTURE = "docs/settings.md", "docs/command-line.md", "docs/pictures/layers.svg"
+FILES = "docs/in-a-file.md"
 ABOUT = {
     "server": "serves benches, classes and runs to the page",
     "scenarios": "what to run, and its results",
@@ -85,6 +88,18 @@ def usual(parameter: Any) -> str:
     default = parameter.default
     is_shown = isinstance(default, str | int | float | Path) and default not in ("", False)
     return f" (default `{default}`)" if is_shown else ""
+
+
+def refused_table() -> str:
+    """Return the scenarios of the library that cannot be a bench in a file, by the reason."""
+    reasons: dict[str, list[str]] = {}
+    for scenario in library():
+        reasons.setdefault(refusal(scenario), []).append(scenario.id)
+    count = len(reasons.pop(""))
+    rows = [
+        f"| {cell(reason)} | {len(ids)} | {', '.join(f'`{one}`' for one in ids)} |" for reason, ids in reasons.items()
+    ]
+    return "\n".join([f"{count} scenarios can.", "", "| reason | count | scenarios |", "|---|---|---|", *rows])
 
 
 def layers(contracts: list[dict[str, Any]], package: str) -> list[str]:
@@ -161,6 +176,7 @@ def documents() -> dict[str, str]:
     return {
         SETTINGS: with_part((ROOT / SETTINGS).read_text(), "settings", settings_table()),
         COMMANDS: with_part((ROOT / COMMANDS).read_text(), "commands", commands_list()),
+        FILES: with_part((ROOT / FILES).read_text(), "refused", refused_table()),
         PICTURE: picture(),
     }
 

@@ -135,7 +135,7 @@ class Ensemble(Board):
     def _table_of_all(self) -> None:
         """Join the tables of signals, outputs before taps."""
         chosen = [("", self.wiring.signals, list(range(len(self.wiring.signals))))]
-        chosen += [(f"{name}:", twin.signals, _shown(twin)) for name, twin in self.twins.items()]
+        chosen += [(f"{name}:", twin.signals, shown(twin)) for name, twin in self.twins.items()]
         found: list[Signal] = []
         self._columns: list[tuple[list[int], list[int]]] = []
         for kind in ("output", "tap"):
@@ -204,13 +204,17 @@ class Ensemble(Board):
             idle.append(own.idle[shown_taps] & (own.count == rows.count))
         return Rows(rows.first_tick, rows.count, np.hstack(outputs), np.hstack(taps), np.concatenate(idle))
 
+    def own_paths(self, name: str) -> list[str]:
+        """Return the dotted paths of the values that a twin has for itself."""
+        return self._own[name]
+
     def _mirror(self, name: str, twin: Board, command: Command) -> None:
         """Carry out a command of the board on a twin at the same tick, except for values the twin has of its own."""
         own = self._own[name]
         if isinstance(command, Switch) and any(path in own for path in switched(twin.spec, command)):
             return
         if isinstance(command, SetValues):
-            shared = {path: value for path, value in command.set.items() if not _is_own(path, own)}
+            shared = {path: value for path, value in command.set.items() if not is_own(path, own)}
             if not shared:
                 return
             command = command.model_copy(update={"set": shared})
@@ -266,7 +270,7 @@ class Ensemble(Board):
         self._table_of_all()
 
 
-def _shown(twin: Board) -> list[int]:
+def shown(twin: Board) -> list[int]:
     """Return the columns of a twin worth seeing."""
     spec = twin.spec
     blocks = {
@@ -282,7 +286,7 @@ def _shown(twin: Board) -> list[int]:
     return [signal.index for signal in twin.signals if signal.block in blocks or signal.name in SHOWN]
 
 
-def _is_own(path: str, own: list[str]) -> bool:
+def is_own(path: str, own: list[str]) -> bool:
     """Say whether a path is one the twin was given, or leads to one."""
     return any(path == mine or mine.startswith(f"{path}.") for mine in own)
 

@@ -1,37 +1,36 @@
-"""The numbers that commands write into the arrays of a bench, found by carrying them out on copies of its board."""
+"""The commands of a bench that a file has: faults, switches and values, each with the numbers it writes.
+
+A board and its twins carry out the same commands, so a value moves freely only where it does on all of them.
+"""
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Iterator
-from functools import partial
-from itertools import product
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from core.block import Block, BlockParams, FloatArray
-from core.board import changes
 from core.board.board import Board
 from core.board.commands import Command, HealFaults, Inject, SetValues, Switch
-from core.board.difference import change
-from core.board.instances import faults_of, usual_params
-from core.board.live import live_change, section_at, value_at
-from core.board.wiring import Wiring, wire
+from core.board.ensemble import Ensemble
+from core.board.instances import faults_of
+from core.board.live import section_at, value_at
 from core.cards import ParameterCard, parameter_cards
 from core.errors import InputError
 from core.faults.fault import FaultParams, Profile
+from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.dependence import dependence
+from scenarios.in_a_file.supervisor_table import supervisor_switches, supervisor_table
 from scenarios.knobs import usual_range
 from scenarios.schema import Scenario
 
-ARRAYS = ("p", "io", "w")
-"""Arrays that a change of the wiring writes; states are written by no change."""
-MOST_WIRINGS = 64
-"""Choices of the controllers that drive in all slots."""
 REACH = 10.0
 """The usual range of a severity, in suggested severities; as on the page."""
 LEAST_SHARE, END_SHARE = 0.5, 0.05
+OfBoards = dict[str, Any]
+"""Something of each board by the name of the twin; the name of the main board is empty."""
+MAIN = ""
 
 
 class Writes:
@@ -40,29 +39,40 @@ class Writes:
     Parameters
     ----------
     board : Board
-        At its first tick.
+        At its first tick, with its twins.
     scenario : Scenario
         Its severities and values that events name are exact.
     """
 
     def __init__(self, board: Board, scenario: Scenario) -> None:
-        self._board, self._spec, self._wiring = board, board.spec, board.wiring
+        self._spec = board.spec
+        self.boards = {MAIN: BoardWrites(board)}
+        if isinstance(board, Ensemble):
+            self.boards |= {name: BoardWrites(twin, board.own_paths(name)) for name, twin in board.twins.items()}
         self._events = [command for commands in scenario.events for command in commands]
+        self.supervisors: OfBoards = {name: supervisor_table(one) for name, one in self.boards.items()}
+        """The table of the supervisor of each board, if it has one."""
         self.left_out: list[str] = []
         """Commands that the file has not, each with the reason."""
 
-    def faults(self) -> dict[str, Any]:
-        """Return of each fault its row, its severities, and its numbers in each variant that an event names."""
-        found = {}
+    def _taking(self, command: Command) -> dict[str, BoardWrites]:
+        """Return the boards that carry out a command: the main board and the twins that it reaches."""
+        return {name: board for name, board in self.boards.items() if name == MAIN or board.takes(command)}
+
+    # -- faults
+
+    def faults(self) -> OfBoards:
+        """Return for each board its faults: row, severities, and the numbers in each variant that an event names."""
+        found: OfBoards = {name: {} for name in self.boards}
         for name, block in faults_of(self._spec.axes, self._spec.library).items():
             try:
-                found[name] = self._fault(name, block)
+                for board, entry in self._fault(name, block).items():
+                    found[board][name] = entry
             except InputError as error:
                 self.left_out.append(f"{name}: {error}")
         return found
 
-    def _fault(self, name: str, block: type[Block]) -> dict[str, Any]:
-        row = self._wiring.row(f"faults.{name}")
+    def _fault(self, name: str, block: type[Block]) -> OfBoards:
         card = next(one for one in parameter_cards(block.Params) if one.name == "severity")
         suggested = float(block.suggested or card.default or 0.05)
         low, high = _severities(card, suggested)
@@ -75,190 +85,157 @@ class Writes:
         for command in own:
             if variant(command) not in map(variant, variants):
                 variants.append(command)
-        self._check_alone(row, plain)
-        return {
-            "row": row,
-            "title": block.title,
-            "group": block.group,
-            "unit": card.unit,
-            "suggested": suggested,
-            "minimum": card.minimum,
-            "maximum": card.maximum,
-            "low": low,
-            "high": high,
-            "start": _start_of(block),
-            "absent": self._absent(row, block),
-            "variants": [
-                {
-                    "parameters": variant(command),
-                    "packed": self._packed(row, command, suggested),
-                    "dependence": dependence(partial(self._packed, row, command), low, high, exact),
-                }
-                for command in variants
-            ],
+        boards = self._taking(plain)
+        entries = {
+            key: {
+                **board.fault(name, plain),
+                "title": block.title,
+                "group": block.group,
+                "unit": card.unit,
+                "suggested": suggested,
+                "minimum": card.minimum,
+                "maximum": card.maximum,
+                "low": low,
+                "high": high,
+                "variants": [],
+            }
+            for key, board in boards.items()
         }
+        for command in variants:
 
-    def _packed(self, row: int, command: Inject, severity: float) -> FloatArray:
-        """Return the numbers of a fault that begins at tick 0."""
-        params = self._params(command.model_copy(update={"severity": severity}))
-        instance = self._wiring.instances[row]._replace(params=params)
-        return instance.packed(self._spec.context(instance.every, instance.axis))
+            def packed(key: str, severity: float, command: Inject = command) -> FloatArray:
+                changed = command.model_copy(update={"severity": severity})
+                return boards[key].packed(entries[key]["row"], changed)
 
-    def _absent(self, row: int, block: type[Block]) -> FloatArray:
-        """Return the numbers of a fault that is not there."""
-        instance = self._wiring.instances[row]._replace(params=usual_params(block))
-        return instance.packed(self._spec.context(instance.every, instance.axis))
+            for key, own_dependence in _dependences(packed, [*boards], low, high, exact).items():
+                entries[key]["variants"].append(
+                    {
+                        "parameters": variant(command),
+                        "packed": packed(key, suggested),
+                        "dependence": own_dependence,
+                    }
+                )
+        return entries
 
-    def _params(self, command: Inject) -> BlockParams:
-        return changes.fault_params(self._spec, command, 0)
-
-    def _check_alone(self, row: int, command: Inject) -> None:
-        """Refuse a fault that writes more than its own numbers, or whose first state depends on it."""
-        board = copy.deepcopy(self._wiring)
-        spec = self._spec.with_faults({**self._spec.faults, command.fault: self._params(command)})
-        if not change(board, self._spec, spec):
-            raise InputError("makes another wiring")
-        own = board.packed(row)
-        own[:] = self._wiring.packed(row)
-        if not all(_is_same(getattr(board, name), getattr(self._wiring, name)) for name in ("p", "io", "w", "table")):
-            raise InputError("writes numbers of other blocks")
-        instance = board.instances[row]
-        first = instance.block.initial(instance.params, spec.context(instance.every, instance.axis))
-        if not _is_same(first, self._wiring.state_of(instance.key)):
-            raise InputError("begins in a state that depends on its severity")
-
-    def present(self, faults: dict[str, Any]) -> dict[str, Any]:
-        """Return the faults that act from the first tick on, as the page knows them."""
+    def present(self, faults: OfBoards) -> OfBoards:
+        """Return for each board the faults that act from the first tick on, as the page knows them."""
         return {
-            name: {**described(_present(name, params), faults), "since": params.start_tick}  # type: ignore[attr-defined]
-            for name, params in self._spec.faults.items()
+            key: {
+                name: {**described(_present(name, params), faults[MAIN]), "since": params.start_tick}  # type: ignore[attr-defined]
+                for name, params in board.spec.faults.items()
+            }
+            for key, board in self.boards.items()
         }
 
     # -- controllers
 
-    def wirings(self) -> dict[str, Any]:
-        """Return the slot of each controller, and for each choice of all slots the numbers that it writes."""
-        slots = {
-            name: [one for one in self._spec.controllers if self._slot(one) == name] for name in self._spec.driving
+    def wirings(self) -> OfBoards:
+        """Return for each board its slots and choices; the main board has no choice that a twin cannot follow."""
+        found = {name: board.wirings() for name, board in self.boards.items()}
+        for name, table in self.supervisors.items():
+            if table is not None and {*table["places"].tolist()} & {*found[name]["writes"]["p"]["places"].tolist()}:
+                raise InputError("a switch of the controller writes the numbers that it sets", "supervisor")
+            for act in supervisor_switches(table):
+                if act in self.boards[name].blocked:
+                    raise InputError(f"its file cannot switch to {act}", "supervisor")
+        main, *twins = self.boards.values()
+        blocked = {
+            controller: reason
+            for twin in twins
+            for controller, reason in twin.blocked.items()
+            if twin.takes(Switch(switch=controller))
         }
-        choices = [*product(*slots.values())]
-        if len(choices) > MOST_WIRINGS:
-            choices = [tuple(self._spec.driving.values())]
-            self.left_out.append("switches: too many choices of controllers")
-        made = {"+".join(choice): wiring for choice in choices if (wiring := self._with(choice)) is not None}
-        return {
-            "slots": {name: slot for slot, names in slots.items() for name in names},
-            "driving": dict(self._spec.driving),
-            "writes": _differences(self._wiring, made),
-        }
-
-    def _slot(self, controller: str) -> str:
-        ((path, _),) = changes.switched(self._spec, Switch(switch=controller)).items()
-        return [*self._spec.driving][-1] if path == "controller.kind" else path.removeprefix("slots.")
-
-    def _with(self, choice: tuple[str, ...]) -> Wiring | None:
-        spec, wiring = self._spec, copy.deepcopy(self._wiring)
-        for name in choice:
-            if name in spec.driving.values():
-                continue
-            try:
-                after = live_change(spec, changes.switched(spec, Switch(switch=name)))[0]
-                if not change(wiring, spec, after):
-                    raise InputError("makes another wiring")
-            except InputError as error:
-                self.left_out.append(f"switch to {name}: {error}")
-                return None
-            spec = after
-        if _is_same(wiring.table, self._wiring.table) and wiring.unread == self._wiring.unread:
-            return wiring
-        self.left_out.append(f"switch to {choice[-1]}: other blocks run")
-        return None
+        self.left_out += [f"switch to {name}: {reason}" for name, reason in (blocked | main.blocked).items()]
+        away = {*blocked} - {*self._spec.driving.values()}
+        for part in found[MAIN]["writes"].values():
+            part["numbers"] = {k: one for k, one in part["numbers"].items() if not away & {*k.split("+")}}
+        return found
 
     # -- values
 
-    def values(self) -> dict[str, Any]:
-        """Return the values that may be set, by path, each with the numbers that follow it."""
-        found: dict[str, Any] = {}
-        taken: set[int] = {
-            place
-            for row, one in enumerate(self._wiring.instances)
-            if one.key.startswith("faults.")
-            for place in self._span(row)
-        }
-        for path, card in self._settable():
+    def values(self) -> OfBoards:
+        """Return for each board the values that may be set, by path, each with the numbers that follow it."""
+        found: OfBoards = {name: {} for name in self.boards}
+        taken = {name: board.places_of_faults() for name, board in self.boards.items()}
+        for name, table in self.supervisors.items():
+            taken[name] |= {*table["places"].tolist()} if table is not None else set()
+        for path, card, is_named in self._settable():
             try:
-                entry = self._value(path, card)
+                entries = self._value(path, card)
             except InputError as error:
                 self.left_out.append(f"set {path}: {error}")
                 continue
-            places = set(entry["dependence"]["places"].tolist())
-            if not places:
+            places = {name: {*entry["dependence"]["places"].tolist()} for name, entry in entries.items()}
+            if not any(places.values()) and not is_named:
                 continue
-            if places & taken:
+            if any(own & taken[name] for name, own in places.items()):
                 self.left_out.append(f"set {path}: its numbers follow another value too")
                 continue
-            taken |= places
-            found[path] = entry
+            for name, entry in entries.items():
+                taken[name] |= places[name]
+                found[name][path] = entry
         return found
 
-    def _span(self, row: int) -> range:
-        first = int(self._wiring.table[row, 1])
-        return range(first, first + len(self._wiring.packed(row)))
-
-    def _settable(self) -> Iterator[tuple[str, ParameterCard]]:
+    def _settable(self) -> Iterator[tuple[str, ParameterCard, bool]]:
+        """Return the paths of live numbers, each with its card, and whether an event of the scenario sets it."""
         spec = self._spec
+        named = {path for one in self._events if isinstance(one, SetValues) for path in one.set}
         heads = [*spec.generators, f"sensors.{spec.measuring}", "plant"]
         heads = ["reference", *heads] if not spec.axes else heads
-        named = {path for one in self._events if isinstance(one, SetValues) for path in one.set}
-        for head in heads:
+        for head in dict.fromkeys([*heads, *(path.rpartition(".")[0] for path in sorted(named))]):
             section = section_at(spec, head)
             for card in parameter_cards(section.block.Params) if section is not None else ():
                 path = f"{head}.{card.name}"
                 value = value_at(spec, path)
                 is_number = isinstance(value, int | float) and not isinstance(value, bool)
-                is_wanted = head != "plant" or "noise" in card.name
+                is_wanted = head in heads and (head != "plant" or "noise" in card.name)
                 if is_number and card.live and card.type == "number" and (is_wanted or path in named):
-                    yield path, card
+                    yield path, card, path in named
 
-    def _value(self, path: str, card: ParameterCard) -> dict[str, Any]:
+    def _value(self, path: str, card: ParameterCard) -> OfBoards:
         value = float(value_at(self._spec, path))
         low, high, _ = usual_range(card.name, value, card)
         named = [one.set[path] for one in self._events if isinstance(one, SetValues) and path in one.set]
         low, high = (self._allowed(path, one, value) for one in (min(low, *named, value), max(high, *named, value)))
         exact = [value, *map(float, named)]
-        self._check_parameters_alone(path, low + 0.75 * (high - low))
+        boards = self._taking(SetValues(set={path: value}))
+        for board in boards.values():
+            board.check_values({path: low + 0.75 * (high - low)})
+        described_value = {"label": card.label, "unit": card.unit, "value": value, "low": low, "high": high}
+
+        def packed(key: str, one: float) -> FloatArray:
+            return boards[key].with_values({path: one}).p
+
         return {
-            "label": card.label,
-            "unit": card.unit,
-            "value": value,
-            "low": low,
-            "high": high,
-            "dependence": dependence(lambda one: self._set(path, one).p, low, high, exact),
+            key: {**described_value, "dependence": own}
+            for key, own in _dependences(packed, [*boards], low, high, exact).items()
         }
 
     def _allowed(self, path: str, end: float, value: float) -> float:
         """Return an end of a range, or a number a little before it where the end itself is refused."""
         try:
-            self._set(path, end)
+            self.boards[MAIN].with_values({path: end})
         except InputError:
             return end + END_SHARE * (value - end)
         return end
 
-    def _set(self, path: str, value: float) -> Wiring:
-        wiring = copy.deepcopy(self._wiring)
-        if not change(wiring, self._spec, live_change(self._spec, {path: value})[0]):
-            raise InputError("makes another wiring")
-        return wiring
 
-    def _check_parameters_alone(self, path: str, value: float) -> None:
-        """Refuse a value that writes more than parameters, or on which a first state depends."""
-        wiring = self._set(path, value)
-        fresh = wire(live_change(self._spec, {path: value})[0], wiring)
-        same = [_is_same(getattr(wiring, name), getattr(self._wiring, name)) for name in ("io", "w", "table")]
-        if not all(same) or wiring.absent != self._wiring.absent or wiring.unread != self._wiring.unread:
-            raise InputError("other blocks run")
-        if not _is_same(fresh.s, self._wiring.s):
-            raise InputError("a first state depends on it")
+def _dependences(
+    packed: Callable[[str, float], FloatArray], boards: list[str], low: float, high: float, exact: list[float]
+) -> OfBoards:
+    """Return how the numbers of each board follow a value, in one way for all of them."""
+    ends = np.cumsum([0, *(len(packed(key, exact[0])) for key in boards)])
+    whole = dependence(lambda one: np.concatenate([packed(key, one) for key in boards]), low, high, exact)
+    found = {}
+    for key, first, end in zip(boards, ends, ends[1:], strict=False):
+        inside = (whole["places"] >= first) & (whole["places"] < end)
+        own = {"places": whole["places"][inside] - first}
+        if "factors" in whole:
+            own["factors"] = whole["factors"][inside]
+        else:
+            own |= {"grid": whole["grid"], "numbers": np.ascontiguousarray(whole["numbers"][:, inside])}
+        found[key] = own
+    return found
 
 
 def _present(name: str, params: BlockParams) -> Inject:
@@ -298,23 +275,3 @@ def _severities(card: ParameterCard, suggested: float) -> tuple[float, float]:
     reach = max(abs(suggested) * REACH, LEAST_SHARE if card.unit in ("", "1") else 0.0)
     low = max(least + 1e-3 * abs(least), -reach) if least < 0.0 else least
     return low, min(most, reach)
-
-
-def _start_of(block: type[Block]) -> int:
-    return next((field.offset for field in block.Packed.layout.fields if field.name == "start_tick"), -1)
-
-
-def _is_same(one: Any, other: Any) -> bool:
-    return np.array_equal(one.view(np.int64), other.view(np.int64))
-
-
-def _differences(base: Wiring, made: dict[str, Wiring]) -> dict[str, Any]:
-    """Return for each wiring the numbers at all places at which any of them differs from the base."""
-    found: dict[str, Any] = {}
-    for name in ARRAYS:
-        before = getattr(base, name).view(np.int64)
-        others = {key: getattr(wiring, name).view(np.int64) for key, wiring in made.items()}
-        places = np.flatnonzero(np.any([one != before for one in others.values()], axis=0))
-        numbers = {key: getattr(wiring, name)[places] for key, wiring in made.items()}
-        found[name] = {"places": places, "numbers": numbers}
-    return found

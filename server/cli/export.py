@@ -1,15 +1,21 @@
-"""The commands that export a bench for other simulators, and as a file."""
+"""The commands that export a bench for other simulators, or as a file, a folder or a package."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from core.errors import InputError
 from scenarios.edit import parse_assignment, with_values
 from server.cli.terminal import AssignOption, load, plainly, say
+
+if TYPE_CHECKING:
+    from scenarios.in_a_file.html import BuiltPage
+    from scenarios.schema import Scenario
+
+WAYS = "--html FILE, --scorm FILE or --gallery DIR"
 
 
 @plainly
@@ -34,25 +40,102 @@ def fmu(
 
 @plainly
 def export(
-    scenario: Annotated[str, typer.Argument(help="Library id or file.")],
+    scenario: Annotated[str, typer.Argument(help="Library id or file; for --gallery a pattern of ids.")] = "",
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the bench into one HTML file.")] = None,
+    scorm: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a package of SCORM 1.2 for a course.")
+    ] = None,
+    sheet: Annotated[
+        str | None,
+        typer.Option("--sheet", metavar="ID", help="With --scorm: a lab sheet, by its id or file, with its bench."),
+    ] = None,
+    gallery: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write the library as live pages with an index, for any host.")
+    ] = None,
     assign: AssignOption = None,
 ) -> None:
     """Write a scenario as a live bench in a file, which any browser runs without a server, with the same digest."""
+    if sum(way is not None for way in (html, scorm, gallery)) != 1:
+        raise InputError("name one thing to write", "--html", WAYS)
+    if sheet is not None and scorm is None:
+        raise InputError("goes with --scorm", "--sheet")
+    if gallery is not None:
+        _gallery(gallery, scenario or "*")
+    elif sheet is not None and scorm is not None:
+        if scenario or assign:
+            raise InputError("goes without a scenario: the sheet names its bench", "--sheet")
+        _sheet(scorm, sheet)
+    elif not scenario:
+        raise InputError("name the scenario", "scenario")
+    else:
+        chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
+        _exhibit(chosen, html, scorm)
+
+
+def _exhibit(scenario: Scenario, html: Path | None, scorm: Path | None) -> None:
+    """Write a scenario with its published run, as a file or as a package."""
     from scenarios.in_a_file.bench_file import bench_file
     from scenarios.in_a_file.html import html_of
-    from server.api.page import DIST
+    from scenarios.in_a_file.published import published
+    from scenarios.in_a_file.scorm import package
     from server.version import VERSION
 
-    if html is None:
-        raise InputError("name the file to write", "--html", "such as --html bench.html")
-    chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-    made = bench_file(chosen)
-    text = html_of(made, DIST / "in-a-file", VERSION)
-    try:
-        html.write_text(text, "utf-8")
-    except OSError as error:
-        raise InputError(f"cannot write {html}: {error.strerror}", "--html") from None
-    say(f"{html}, {len(text.encode()) / 1e3:.0f} kB")
+    made = bench_file(scenario)
+    built = _built()
+    text = html_of(made, built, VERSION, published=published(scenario))
+    if html is not None:
+        _write(html, text.encode(), "--html")
+    elif scorm is not None:
+        _write(scorm, package(scenario.id, made.document["title"], text), "--scorm")
     for reason in made.left_out:
         say(f"  without {reason}")
+
+
+def _sheet(scorm: Path, name: str) -> None:
+    """Write a lab sheet with its bench as a package."""
+    from scenarios.in_a_file.bench_file import bench_file
+    from scenarios.in_a_file.html import html_of
+    from scenarios.in_a_file.questions import file_sheet
+    from scenarios.in_a_file.scorm import package
+    from server.cli.lessons import sheet_named
+    from server.version import VERSION
+
+    sheet = sheet_named(name, "--sheet")
+    asked = file_sheet(sheet)
+    made, built = bench_file(asked.scenario), _built()
+    title = asked.document["title"]
+    _write(scorm, package(sheet.id, title, html_of(made, built, VERSION, sheet=asked.document)), "--scorm")
+    say(f"  {len(asked.document['questions'])} questions. {asked.document['rest']}")
+
+
+def _gallery(folder: Path, pattern: str) -> None:
+    """Write the library as a folder for a static host."""
+    from fnmatch import fnmatch
+
+    from scenarios.in_a_file.gallery import write_gallery
+    from scenarios.library import get, ids
+    from server.version import VERSION
+
+    names = [name for name in ids() if fnmatch(name, pattern)]
+    if not names:
+        raise InputError(f"no scenario matches {pattern!r}", "scenario")
+    try:
+        pages = write_gallery(folder, map(get, names), _built(), VERSION, say)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror}", "--gallery") from None
+    say(f"{folder / 'index.html'}, {len(pages)} pages")
+
+
+def _built() -> BuiltPage:
+    from scenarios.in_a_file.html import BuiltPage
+    from server.api.page import DIST
+
+    return BuiltPage.of(DIST / "in-a-file")
+
+
+def _write(file: Path, content: bytes, option: str) -> None:
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        raise InputError(f"cannot write {file}: {error.strerror}", option) from None
+    say(f"{file}, {len(content) / 1e3:.0f} kB")

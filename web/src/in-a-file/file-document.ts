@@ -1,4 +1,4 @@
-import type { LogEntry } from "../api/types";
+import type { LogEntry, PrintedMark } from "../api/types";
 
 /** How the numbers at some places follow a value: as its multiples, or by the points of a grid. */
 export interface Dependence {
@@ -87,15 +87,25 @@ export interface FileDiagnoser {
   factors: Record<string, number>[];
 }
 
-/** All that a bench in a file knows besides its code. */
-export interface FileDocument {
-  id: string;
-  title: string;
-  summary: string;
-  absent: string;
-  version: string;
+/** The acts of a supervisor by the number of its request, the place of this number, and the values that they set. */
+export interface FileSupervisor {
+  place: number;
+  values: Record<string, unknown>;
+  places: BigInt64Array;
+  requests: { act: FileAct; numbers?: Float64Array }[][];
+}
+
+export type FileAct = { switch: string; cold?: boolean } | { set: Record<string, unknown> } | { make_safe: string };
+
+export interface FileSignal {
+  name: string;
+  unit: string;
+  meaning: string;
+}
+
+/** All that a board in a file knows besides its code. */
+export interface BoardDocument {
   dt_ms: number;
-  seed: number;
   arrays: { table: BigInt64Array; p: Float64Array; s: Float64Array; w: Float64Array; io: BigInt64Array };
   running: number[];
   rows: FileRow[];
@@ -117,7 +127,7 @@ export interface FileDocument {
   reasons: { tripped: number; watched: number; changed: number };
   outputs: number;
   reserved: number;
-  signals: { name: string; unit: string; meaning: string }[];
+  signals: FileSignal[];
   blocks: string[];
   trip: number;
   guards: number[];
@@ -134,11 +144,68 @@ export interface FileDocument {
     writes: { p: WiringWrites<Float64Array>; io: WiringWrites<BigInt64Array>; w: WiringWrites<Float64Array> };
   };
   values: Record<string, FileValue>;
+  supervisor: FileSupervisor | null;
   sensors: { all: string[]; measuring: string };
   controllers: Record<string, string>;
-  events: FileEvent[];
   /** The entries of the log before the first tick. */
   log: Omit<FileEntry, "seq">[];
+}
+
+/** A twin: the columns that are seen, and the controllers and values that commands to the bench do not reach. */
+export interface TwinDocument extends BoardDocument {
+  shown: number[];
+  own_switches: string[];
+  own_values: string[];
+}
+
+/** All that a bench in a file knows besides its code. */
+export interface FileDocument extends BoardDocument {
+  id: string;
+  title: string;
+  summary: string;
+  absent: string;
+  version: string;
+  seed: number;
+  events: FileEvent[];
+  /** Commands that have taken effect before the first tick, which the twins carry out at it. */
+  done: [number, FileCommand][];
+  twins: Record<string, TwinDocument>;
+  /** The run whose figures and digest are published. */
+  published?: FilePublished;
+  /** The address of the list of pages that this page is one of. */
+  index?: string;
+  sheet?: FileSheet;
+}
+
+export interface FilePublished {
+  source: string;
+  claim: string;
+  verdict: string;
+  ticks: number;
+  digest: string;
+  expectations: { metric: string; published: string; expected: string; measured: string; ok: boolean }[];
+  marks: PrintedMark[];
+}
+
+export interface FileQuestion {
+  heading: string;
+  text: string;
+  question: string;
+  points: number;
+  tries: number;
+  value: number;
+  unit: string;
+  within: number;
+  within_absolute: number;
+  partly: { within: number; share: number } | null;
+}
+
+/** The questions of a lab sheet that a file can judge, and a line about the other steps. */
+export interface FileSheet {
+  title: string;
+  intro: string;
+  questions: FileQuestion[];
+  rest: string;
 }
 
 export type FileEntry = Pick<LogEntry, "seq" | "tick" | "actor" | "kind" | "text" | "old" | "new"> & {

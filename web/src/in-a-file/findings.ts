@@ -1,13 +1,13 @@
-import type { FileDocument, FileEntry, Told } from "./file-document";
+import type { BoardDocument, FileEntry, Told } from "./file-document";
 
 export type Finding = Pick<FileEntry, "kind" | "text" | "old" | "new">;
 
 /** Tells the findings of the diagnosers and the warnings of the blocks, from the signals that change with them. */
 export class Findings {
-  private readonly document: FileDocument;
+  private readonly document: BoardDocument;
   private readonly columns: number[];
 
-  constructor(document: FileDocument) {
+  constructor(document: BoardDocument) {
     this.document = document;
     this.columns = [...document.followed.columns].map(Number);
   }

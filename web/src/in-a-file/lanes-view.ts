@@ -31,10 +31,10 @@ export class LanesView {
       this.id = id;
       time.tell();
     };
-    const choices = ids.map((id) => [id, bench.document.diagnosers[id].title] as const);
+    const choices = ids.map((id) => [id, bench.diagnosers[id].title] as const);
     const head = ids.length > 1 ? menu("Diagnoser", choices, this.id, choose) : element("b", {}, choices[0][1]);
     const plot = element("div", { className: "plot" }, this.canvas, this.over);
-    const least = Math.max(...ids.map((id) => leastHeight(bench.document.diagnosers[id].names.length, FONT_PX)));
+    const least = Math.max(...ids.map((id) => leastHeight(bench.diagnosers[id].names.length, FONT_PX)));
     plot.style.minHeight = `${least}px`;
     this.root.append(element("div", { className: "line" }, head), plot);
     this.canvas.role = "img";
@@ -61,7 +61,7 @@ export class LanesView {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     }
-    const { names } = bench.document.diagnosers[id];
+    const { names } = bench.diagnosers[id];
     const words = names.map((name) => hypothesisWords(name));
     pen.font = fontFor(FONT_PX, ratio, 700);
     const widthOf = (texts: string[]) => Math.max(...texts.map((text) => pen.measureText(text).width)) / ratio + 22;
@@ -70,7 +70,7 @@ export class LanesView {
     const layout = lanesLayout(width, height, names.length, FONT_PX, left);
     this.over.style.left = `${left}px`;
     this.over.style.right = `${width - layout.right}px`;
-    const all = bench.document.signals.map(({ name }) => name);
+    const all = bench.signals.map(({ name }) => name);
     const ports = [...names.map((name) => `probability.${name}`), "winner", "truth", "unexplained"];
     const signals = ports.map((port) => all.indexOf(`${id}.${port}`)).filter((signal) => signal >= 0);
     const { span, isHeld } = time;

@@ -5,14 +5,17 @@ import { hover } from "../ui/hover";
 import type { Scheme } from "../ui/palette";
 import { teachWords } from "./bench-words";
 import { ControllerChoice } from "./controller-choice";
+import { Course, courseAround } from "./course";
 import { element } from "./dom";
 import { EventList } from "./event-list";
 import { FaultList } from "./fault-list";
 import { FileBench } from "./file-bench";
-import type { FileDocument } from "./file-document";
+import type { FileDocument, FileSheet } from "./file-document";
 import { LanesView } from "./lanes-view";
 import { Pace } from "./pace";
 import { bytesOf, unpacked } from "./pack";
+import { PublishedRun } from "./published-run";
+import { QuestionList } from "./question-list";
 import { RunBar } from "./run-bar";
 import { ScopeView } from "./scope-view";
 import { TimeWindow } from "./time-window";
@@ -23,6 +26,8 @@ const USUAL_SCALE = 0.002;
 const USUAL_TICKS = 2000;
 const WORDS_MS = 200;
 const NOTICE_MS = 6000;
+/** End of the address of a page in a slide: without bars, and paused at first. */
+const FRAMED = "#frame";
 
 const textOf = (id: string) => document.getElementById(id)?.textContent ?? "";
 
@@ -31,15 +36,20 @@ async function show(): Promise<void> {
     await bytesOf(textOf("code")),
     unpacked<FileDocument>(await bytesOf(textOf("pack"))),
   );
-  const { title, summary, absent, dt_ms: dtMs, diagnosers, version } = bench.document;
-  teachWords(bench.document);
+  const { title, summary, absent, dt_ms: dtMs, version, index, sheet } = bench.document;
+  const { diagnosers } = bench;
+  teachWords(bench);
   const pace = new Pace(dtMs, USUAL_SCALE);
+  const isFramed = location.hash === FRAMED;
+  pace.isRunning = !isFramed;
+  document.body.classList.toggle("framed", isFramed);
   const time = new TimeWindow(bench, windowOf(dtMs));
   const notice = element("p", { className: "notice", role: "alert" });
   let isDirty = true;
   let noticed: ReturnType<typeof setTimeout> | undefined;
   const act = (what: () => void) => {
     try {
+      if (published?.isComputing) throw new Error("The published run is being computed: wait, or stop it");
       what();
       notice.textContent = "";
     } catch (error) {
@@ -50,8 +60,9 @@ async function show(): Promise<void> {
     isDirty = true;
     tellAll();
   };
+  const published = bench.document.published && new PublishedRun(bench, bench.document.published);
   const bar = new RunBar(bench, pace, time, act);
-  const scopes = scopesOf(bench.document.signals).map((title) => new ScopeView(bench, time, title));
+  const scopes = scopesOf(bench.signals).map((title) => new ScopeView(bench, time, title));
   const scored = Object.keys(diagnosers).filter((id) => diagnosers[id].scored);
   const lanes = scored.length > 0 ? new LanesView(bench, time, scored) : undefined;
   const controllers = new ControllerChoice(bench, act);
@@ -61,10 +72,14 @@ async function show(): Promise<void> {
   const tellAll = () => {
     for (const part of [bar, controllers, faults, values, events]) part.show();
   };
-  const head = element("header", {}, element("h1", {}, title), element("p", { className: "note" }, summary));
+  const up = index ? element("a", { href: index }, "All exhibits") : "";
+  const head = element("header", {}, up, element("h1", {}, title), element("p", { className: "note" }, summary));
   const foot = element("footer", { className: "remark" }, `Computed in this page by CombBench ${version}. ${absent}`);
   const plots = element("div", { className: "plots" }, ...scopes.map(({ root }) => root), lanes?.root ?? "");
-  const aside = element("aside", {}, ...[controllers, faults, values, events].map(({ root }) => root));
+  const course = enterCourse(sheet);
+  const questions = sheet && new QuestionList(sheet, (percent, isDone) => course?.score(percent, isDone));
+  const lists = [questions, published, controllers, faults, values, events];
+  const aside = element("aside", {}, ...lists.flatMap((list) => list?.root ?? []));
   document.body.replaceChildren(element("main", {}, head, bar.root, notice, plots, aside, foot));
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -96,7 +111,7 @@ async function show(): Promise<void> {
   let told = Number.NEGATIVE_INFINITY;
   const draw = (now: number) => {
     const before = bench.tick;
-    pace.run(now, (n) => bench.advance(n));
+    if (!published?.isComputing) pace.run(now, (n) => bench.advance(n));
     const tells = now - told > WORDS_MS;
     if (bench.tick !== before || isDirty) {
       for (const scope of scopes) scope.draw(tells);
@@ -113,10 +128,20 @@ async function show(): Promise<void> {
   requestAnimationFrame(draw);
 }
 
-/** The presets of the two scopes: displacement and voltage, as far as the bench has them, else the first presets. */
-function scopesOf(signals: FileDocument["signals"]): string[] {
+/** The course around the page, if there is one, until the page is left. */
+function enterCourse(sheet: FileSheet | undefined): Course | undefined {
+  const api = courseAround(window as never);
+  const course = api && new Course(api, sheet !== undefined);
+  window.addEventListener("pagehide", () => course?.leave());
+  return course;
+}
+
+/** The presets of the two scopes: displacement and voltage, with twins if there are any; else the first presets. */
+function scopesOf(signals: FileBench["signals"]): string[] {
   const titles = presetsOn(signals).map(({ title }) => title);
-  const usual = ["Displacement", "Voltage"].filter((title) => titles.includes(title));
+  const usual = ["Displacement", "Voltage"].flatMap(
+    (name) => titles.find((title) => title === `${name} with twins`) ?? titles.find((title) => title === name) ?? [],
+  );
   return [...new Set([...usual, ...titles])].slice(0, 2);
 }
 

@@ -8,13 +8,15 @@ interface Script {
   /** Ticks of one call, in turn; as a page would have them. */
   slices: number[];
   commands: [number, FileCommand][];
+  /** Signals whose last ticks are wanted, and how many of them. */
+  seen?: { signals: number[]; ticks: number };
 }
 
 /** Play scripts on the bench of a file without a page: the digest, the last tick, and the log of each. */
 export async function play(code: string, pack: string, scripts: Script[]) {
   const bench = await FileBench.load(await bytesOf(code), unpacked<FileDocument>(await bytesOf(pack)));
   const played = [];
-  for (const { ticks, slices, commands } of scripts) {
+  for (const { ticks, slices, commands, seen } of scripts) {
     bench.reset();
     const refused: string[] = [];
     const waiting = [...commands];
@@ -32,7 +34,10 @@ export async function play(code: string, pack: string, scripts: Script[]) {
     const { reserved, signals } = bench.document;
     const numbers = bench.arrays.w.view.slice(reserved, reserved + signals.length);
     const bits = Array.from(new BigUint64Array(numbers.buffer), String); // JSON has neither NaN nor -0
-    played.push({ digest: await bench.digest(), tick: bench.tick, trip: bench.trip, refused, log: bench.log, bits });
+    const { tick, trip, log } = bench;
+    const cut = seen && bench.cut(seen.signals, tick - seen.ticks, tick, seen.ticks);
+    const trace = cut ? Array.from(new Uint32Array(cut.buffer, 0, cut.length)) : [];
+    played.push({ digest: await bench.digest(), tick, trip, refused, log, bits, trace });
   }
   return played;
 }

@@ -33,7 +33,7 @@ export class ScopeView {
   constructor(bench: FileBench, time: TimeWindow, title: string) {
     this.bench = bench;
     this.time = time;
-    const presets = presetsOn(bench.document.signals);
+    const presets = presetsOn(bench.signals);
     const chosen = presets.find((one) => one.title === title) ?? presets[0];
     const choose = (title: string) => this.choose(presets.find((one) => one.title === title)?.signals ?? []);
     const choices = presets.map(({ title }) => [title, title] as const);
@@ -49,7 +49,7 @@ export class ScopeView {
   /** Show it in these colours. */
   dress(scheme: Scheme): void {
     this.scheme = scheme;
-    this.choose(this.signals.map((signal) => this.bench.document.signals[signal].name));
+    this.choose(this.signals.map((signal) => this.bench.signals[signal].name));
   }
 
   /** Draw the ticks that the panels show. */
@@ -64,7 +64,7 @@ export class ScopeView {
   }
 
   private choose(names: readonly string[]): void {
-    const { signals, diagnosers } = this.bench.document;
+    const { signals, diagnosers } = this.bench;
     const all = signals.map(({ name }) => name);
     const hypotheses = Object.values(diagnosers)[0]?.names ?? [];
     this.signals = names.slice(0, MOST).map((name) => all.indexOf(name));
@@ -73,6 +73,7 @@ export class ScopeView {
       const style = traceStyle(name, all, hypotheses);
       return { name, unit, ...style, colour: traceColour(style, this.scheme) };
     });
+    const marks = (this.bench.document.published?.marks ?? []).filter(({ signal }) => names.includes(signal));
     this.plot?.destroy();
     this.plot = new ScopePlot({
       host: this.host,
@@ -81,7 +82,7 @@ export class ScopeView {
       lineWidth: LINE_PX,
       fontSize: FONT_PX,
       marks: () => this.marks(),
-      printed: () => [],
+      printed: () => marks,
       isLog: false,
       isShaded: () => false,
       ghost: () => undefined,

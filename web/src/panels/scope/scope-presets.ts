@@ -17,9 +17,18 @@ const PRESETS: { title: string; pick: RegExp }[] = [
   { title: "Fault severity", pick: /^faults\./ },
 ];
 
+/** Scopes of a bench with twins: the same signal of all of them. */
+const OF_TWINS: typeof PRESETS = [
+  { title: "Displacement with twins", pick: /^([a-z0-9_]+:)?plant\.displacement$/ },
+  { title: "Rate with twins", pick: /^([a-z0-9_]+:)?[a-z_]+\.rate$/ },
+  { title: "Voltage with twins", pick: /^([a-z0-9_]+:)?drive\.voltage$/ },
+];
+
 /** The presets with signals on a bench. */
-export const presetsOn = (signals: readonly { name: string }[]) =>
-  PRESETS.map(({ title, pick }) => ({
-    title,
-    signals: signals.map((s) => s.name).filter((name) => pick.test(name)),
-  })).filter((preset) => preset.signals.length > 0);
+export function presetsOn(signals: readonly { name: string }[]) {
+  const names = signals.map(({ name }) => name);
+  const presets = names.some((name) => name.includes(":")) ? [...PRESETS, ...OF_TWINS] : PRESETS;
+  return presets
+    .map(({ title, pick }) => ({ title, signals: names.filter((name) => pick.test(name)) }))
+    .filter((preset) => preset.signals.length > 0);
+}

@@ -1,0 +1,115 @@
+"""A folder for any static host: the scenarios of the library as live pages, with their published runs, and an index."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterable
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from core.errors import InputError
+from scenarios.in_a_file.bench_file import bench_file, refusal
+from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage, html_of
+from scenarios.in_a_file.published import published
+from scenarios.schema import Scenario
+
+HEADINGS = {"app": "Appendices", "ch1": "1 Devices", "ch2": "2 Sensing", "ch3": "3 Adaptive control",
+            "ch4": "4 Sliding control", "ch5": "5 Fault diagnosis", "ch6": "6 Gyroscopes",
+            "gyr": "Gyroscopes beyond the text"}  # fmt: skip
+"""Of the index, by the first three letters of an id."""
+INDEX = """<!doctype html>
+<html lang="en" data-mantine-color-scheme="dark" class="index">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="dark light">
+<title>Live exhibits of CombBench</title>
+<link rel="stylesheet" href="{style}">
+</head>
+<body>
+<script>
+const light = matchMedia("(prefers-color-scheme: light)");
+const dress = () => {{ document.documentElement.dataset.mantineColorScheme = light.matches ? "light" : "dark"; }};
+light.addEventListener("change", dress);
+dress();
+</script>
+<header>
+<h1>Live exhibits</h1>
+<p>Each of these pages is a bench that your browser computes. Inject faults, switch controllers, or compute the
+published run anew: the page compares its digest, a hash of every sample, with the published digest.</p>
+</header>
+{sections}
+<footer class="remark">Made by CombBench {version}. {missing}</footer>
+</body>
+</html>
+"""
+CARD = """<li><a href="{id}.html">{title}</a> <span class="verdict">{verdict}</span>
+<p>{claim}</p><small>{source}</small></li>"""
+
+
+def write_gallery(
+    folder: Path, chosen: Iterable[Scenario], built: BuiltPage, version: str, say: Callable[[str], None]
+) -> list[str]:
+    """Write the folder, and return the ids of the pages.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there; files of these names are replaced.
+    chosen : iterable of Scenario
+        Scenarios; the index names the scenarios that cannot be a file.
+    built : BuiltPage
+        Script and style sheet, which all pages share.
+    version : str
+        Of this project.
+    say : callable
+        Takes a line for each page.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    pages: list[tuple[Scenario, dict[str, Any]]] = []
+    refused: list[tuple[str, str]] = []
+    for scenario in chosen:
+        if reason := refusal(scenario):
+            refused.append((reason, scenario.id))
+            continue
+        record = published(scenario)
+        text = html_of(bench_file(scenario), None, version, published=record, index="index.html")
+        _write(folder / f"{scenario.id}.html", text)
+        say(f"{scenario.id}.html, {len(text.encode()) / 1e3:.0f} kB")
+        pages.append((scenario, record))
+    if not pages:
+        raise InputError("none of these scenarios can be a bench in a file", "--gallery")
+    _write(folder / SCRIPT, built.script)
+    _write(folder / STYLE, built.style)
+    _write(folder / "index.html", _index(pages, refused, version))
+    return [scenario.id for scenario, _ in pages]
+
+
+def _index(pages: list[tuple[Scenario, dict[str, Any]]], refused: list[tuple[str, str]], version: str) -> str:
+    sections = []
+    for heading, group in groupby(pages, lambda page: HEADINGS.get(page[0].id[:3], "First looks")):
+        cards = "\n".join(_card(scenario, record) for scenario, record in group)
+        sections.append(f"<section><h2>{heading}</h2>\n<ul>\n{cards}\n</ul></section>")
+    missing = [
+        f"Without {', '.join(name for _, name in group)}: {reason}."
+        for reason, group in groupby(sorted(refused), lambda one: one[0])
+    ]
+    return INDEX.format(
+        policy=SHARED_POLICY,
+        style=STYLE,
+        sections="\n".join(sections),
+        version=html.escape(version),
+        missing=html.escape(" ".join(missing)),
+    )
+
+
+def _card(scenario: Scenario, record: dict[str, Any]) -> str:
+    head = scenario.head
+    words = {"title": head.title or scenario.id, "claim": head.claim or head.summary, "source": head.source}
+    return CARD.format(id=scenario.id, verdict=record["verdict"], **{k: html.escape(one) for k, one in words.items()})
+
+
+def _write(file: Path, text: str) -> None:
+    file.write_text(text, "utf-8")
