@@ -90,6 +90,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
         **_trips(board),
         "followed": _followed(board),
         "diagnosers": {name: _diagnoser(section) for name, section in board.diagnosers.items()},
+        "scores": {name: _score(board, name) for name, section in board.diagnosers.items() if scored(section.block)},
         "faults": faults,
         "present": writes.present(faults),
         "wirings": wirings,
@@ -211,6 +212,20 @@ def _diagnoser(section: Section) -> dict[str, Any]:
         "scored": scored(section.block),
         "names": [one.name for one in hypotheses],
         "factors": [one.model_dump(exclude_defaults=True, exclude={"name"}) for one in hypotheses],
+    }
+
+
+def _score(board: Board, name: str) -> dict[str, Any]:
+    """Return where the score of a diagnoser is: its row, the places of its counters, and its two signals."""
+    wiring = board.wiring
+    layout = type(wiring.state(f"{name}.score")).layout
+    return {
+        "row": wiring.row(f"{name}.score"),
+        "names": names_of(board.diagnosers[name].params),
+        "places": {field.name: layout.size if field.tail else field.offset for field in layout.fields},
+        "kept": {field.name: field.count for field in layout.fields if field.count},
+        "winner": wiring.index[f"{name}.winner"],
+        "unexplained": wiring.index[f"{name}.unexplained"],
     }
 
 

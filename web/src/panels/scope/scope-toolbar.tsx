@@ -2,6 +2,7 @@ import { ActionIcon, Menu, NativeSelect } from "@mantine/core";
 import { useElementSize } from "@mantine/hooks";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { useServed } from "../../api/me";
 import type { ScopeConfig } from "../../stream/scope-config";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import { LiveButton } from "./live-button";
@@ -26,6 +27,7 @@ interface ScopeToolbarProps {
 /** The tools of a scope: signals, roll or trigger, window, live. */
 export function ScopeToolbar(props: ScopeToolbarProps) {
   const { config, onChange, past, onLive, trigger, onRearm, exporter, children } = props;
+  const served = useServed();
   const { ref, width } = useElementSize();
   const isNarrow = width > 0 && width < NARROW_PX;
   const isTriggered = config.mode === "triggered";
@@ -43,7 +45,7 @@ export function ScopeToolbar(props: ScopeToolbarProps) {
             onRearm={onRearm}
           />
         )}
-        {!isNarrow && (
+        {!isNarrow && served && (
           <button
             type="button"
             className={styles.toggle}
@@ -78,9 +80,11 @@ export function ScopeToolbar(props: ScopeToolbarProps) {
         {exporter(
           isNarrow && (
             <>
-              <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
-                {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
-              </Menu.Item>
+              {served && (
+                <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
+                  {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
+                </Menu.Item>
+              )}
               <Menu.Item leftSection={<IconRuler2 size={15} />} onClick={measure}>
                 {config.measure ? "Without cursors and figures" : "Measure: cursors A and B, and figures"}
               </Menu.Item>
