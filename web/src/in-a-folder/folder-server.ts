@@ -98,7 +98,7 @@ export class FolderServer {
       "GET /catalog": () => ({ version: this.document.version, blocks: answers.catalog }),
       "GET /scenarios": () => ({ scenarios: [answers.scenario] }),
       "GET /devices": () => ({ devices: answers.devices, geometry: [] }),
-      "POST /devices/evaluate": () => (answers.drawing?.geometry ? answers.drawing : answers.stand_in),
+      "POST /devices/evaluate": () => this.drawing((body.device ?? {}) as { id?: string }),
       "GET /benches": () => ({ benches: [...this.benches.values()].map((bench) => bench.describe()) }),
     };
     const recorded = known[`${method} ${path}`];
@@ -160,6 +160,12 @@ export class FolderServer {
     if (!origin || !bench.isPast) throw new Error("it has gone on from its past");
     bench.origin = { ...origin, tick };
     bench.stand(this.benches.get(origin.bench) ?? bench, tick, origin.window_ticks);
+  }
+
+  /** The drawing of the device of the bench, or of the device that the page shows in its place. */
+  private drawing({ id }: { id?: string }) {
+    const { drawing, stand_in } = this.answers;
+    return drawing?.geometry || id !== stand_in?.title ? drawing : stand_in;
   }
 
   /** The first bench from its start. */

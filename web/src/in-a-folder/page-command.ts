@@ -15,6 +15,7 @@ export type BoardCommand = Exclude<Command, RunCommand>;
 
 type Fault = Extract<BoardCommand, { fault: unknown }>;
 
+const NEAR = 1e-9;
 const CONDITION = /^\s*(\S+)\s*([<>])\s*(\S+)\s*$/;
 
 /** A command of the page with its moment, as the bench of a file takes it; words where the file has it not. */
@@ -35,8 +36,10 @@ export function fileEvent(bench: FileBench, command: BoardCommand): FileEvent {
 
 /** The same without its moment. */
 function fileCommand(bench: FileBench, command: BoardCommand): FileCommand {
-  if ("fault" in command)
-    return { fault: command.fault, severity: command.severity, variant: variantOf(bench, command) };
+  if ("fault" in command) {
+    const variant = variantOf(bench, command);
+    return { fault: command.fault, severity: severityOf(bench, command, variant), variant };
+  }
   if ("heal" in command) return { heal: command.heal };
   if ("switch" in command) return { switch: command.switch, cold: command.cold ?? false };
   if ("set" in command) return { set: numbersOf(command.set) };
@@ -56,6 +59,12 @@ function variantOf(bench: FileBench, { fault, profile, parameters = {} }: Fault)
   );
   if (found < 0 && variants.length > 0) throw new Error(`without a server ${fault} comes as a step of its usual kind`);
   return Math.max(found, 0);
+}
+
+/** The severity; that of a grid where it differs in its last digits alone. */
+function severityOf(bench: FileBench, { fault, severity }: Fault, variant: number): number {
+  const { grid = [] } = bench.document.faults[fault]?.variants[variant].dependence ?? {};
+  return grid.find((one) => Math.abs(one - severity) <= NEAR * Math.abs(one)) ?? severity;
 }
 
 function numbersOf(values: Record<string, unknown>): Record<string, number> {

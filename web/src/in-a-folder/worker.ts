@@ -16,14 +16,13 @@ const part = async (name: string) => {
   return inflated(new Uint8Array(await answer.arrayBuffer()));
 };
 
-/** The server begins once its bench is here; what the page has asked until then waits. */
+/** What the page asks before the bench is here waits. */
 const begun = (async () => {
   const [code, pack, answers] = await Promise.all(["code.bin", "pack.bin", "answers.bin"].map(part));
   const known = JSON.parse(new TextDecoder().decode(answers)) as FolderAnswers;
   const server = new FolderServer(code, unpacked<FileDocument>(pack), known, (message, moved = []) =>
     host.postMessage(message, moved),
   );
-  await server.begin();
   const turn = () => {
     const began = performance.now();
     server.turn(began);
