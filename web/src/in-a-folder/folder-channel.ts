@@ -54,14 +54,7 @@ export class FolderChannel {
 
   /** Send what is new: events and status, and a picture if the page takes one. */
   flush(now: number): void {
-    const { events, lastEvent } = this.bench;
-    const isNew = lastEvent > this.cursor;
-    while (this.cursor < lastEvent) {
-      const after = events.filter(({ seq }) => seq > this.cursor).slice(0, EVENTS_AT_ONCE);
-      this.say({ type: "events", events: after });
-      this.cursor = after.at(-1)?.seq ?? lastEvent;
-    }
-    if (isNew || now - this.told >= STATUS_MS) {
+    if (this.events() || now - this.told >= STATUS_MS) {
       this.told = now;
       this.status();
     }
@@ -93,9 +86,21 @@ export class FolderChannel {
       this.say({ type: "reply", id, ok: false, error: refusalOf(error as Error) });
       return;
     }
-    this.flush(performance.now());
+    this.events();
     this.status();
     this.say({ type: "reply", id, ok: true, tick: this.bench.file.tick });
+  }
+
+  /** Send the events that are new; whether there are any. */
+  private events(): boolean {
+    const { events, lastEvent } = this.bench;
+    const isNew = lastEvent > this.cursor;
+    while (this.cursor < lastEvent) {
+      const after = events.filter(({ seq }) => seq > this.cursor).slice(0, EVENTS_AT_ONCE);
+      this.say({ type: "events", events: after });
+      this.cursor = after.at(-1)?.seq ?? lastEvent;
+    }
+    return isNew;
   }
 
   private status(): void {
