@@ -48,7 +48,10 @@ const BOARDS: [string, () => Promise<Board>][] = [
   ],
 ];
 
-beforeEach(() => server.on("GET", "/catalog", catalog));
+beforeEach(() => {
+  server.on("GET", "/catalog", catalog);
+  server.on("GET", "/classes", { classes: [] });
+});
 afterEach(() => setAnswering((request) => fetch(request)));
 
 function Lanes() {

@@ -10,6 +10,8 @@ import { spanBetween, spanEnding } from "./tick-span";
 const WINDOW = 2;
 const STATUS_MS = 200;
 const EVENTS_AT_ONCE = 100;
+/** Messages that the page has not taken yet: beyond, nothing is sent but answers. */
+const MOST_WAITING = 6;
 
 type Find = (bench: string) => LiveBench | undefined;
 
@@ -29,6 +31,7 @@ export class FolderChannel {
   private readonly post: (data: string | ArrayBuffer) => void;
   private readonly panels = new Map<number, Panel>();
   private readonly revisions = new Map<number, number>();
+  private waiting = 0;
   private frame = 0;
   private acked = 0;
   private cursor: number;
@@ -52,8 +55,14 @@ export class FolderChannel {
     else if (message.type === "command") this.command(message);
   }
 
-  /** Send what is new: events and status, and a picture if the page takes one. */
+  /** Note that the page has taken one more message. */
+  took(): void {
+    this.waiting -= 1;
+  }
+
+  /** Send what is new: events and status, and a picture if the page takes one. A page that lags gets the newest later. */
   flush(now: number): void {
+    if (this.waiting > MOST_WAITING) return;
     if (this.events() || now - this.told >= STATUS_MS) {
       this.told = now;
       this.status();
@@ -122,11 +131,16 @@ export class FolderChannel {
     if (panels.length === 0) return;
     this.frame += 1;
     const moment = { headTick: file.tick, dtMs: file.document.dt_ms };
-    this.post(encodeFrame({ frame: this.frame, running: time.isRunning, ...moment, panels }));
+    this.send(encodeFrame({ frame: this.frame, running: time.isRunning, ...moment, panels }));
+  }
+
+  private send(data: string | ArrayBuffer): void {
+    this.waiting += 1;
+    this.post(data);
   }
 
   private say(message: components["schemas"]["Hello"] | object): void {
-    this.post(JSON.stringify(message));
+    this.send(JSON.stringify(message));
   }
 }
 

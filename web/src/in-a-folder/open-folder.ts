@@ -22,8 +22,10 @@ export function openFolder(port: Port): { transport: Transport; reach: (request:
     if ("opened" in message) {
       channel.isOpen = true;
       channel.onOpen();
-    } else if ("data" in message) channel.onMessage(message.data);
-    else {
+    } else if ("data" in message) {
+      channel.onMessage(message.data);
+      send({ channel: message.channel, taken: true });
+    } else {
       channel.isOpen = false;
       channels.delete(message.channel);
       channel.onClose(message.closed);

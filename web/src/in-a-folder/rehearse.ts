@@ -20,6 +20,7 @@ export async function rehearse(code: string, pack: string, answers: FolderAnswer
   );
   const ask = (message: ToWorker) => server.hear(message);
   const take = (message: FromWorker) => {
+    if ("data" in message) void ask({ channel: CHANNEL, taken: true });
     if ("ask" in message) said.push({ status: message.status, body: message.body });
     else if ("data" in message && typeof message.data === "string") said.push(JSON.parse(message.data));
     else if ("data" in message) {

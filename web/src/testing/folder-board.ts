@@ -41,6 +41,8 @@ export class FolderBoard {
   async command(command: Command): Promise<void> {
     await act(async () => void (await stream.client.command(command)));
     await this.turn();
+    const isListed = () => (useBench.getState().events.at(-1)?.seq ?? 0) === useBench.getState().bench?.last_event;
+    await act(() => vi.waitFor(() => expect(isListed()).toBe(true)));
   }
 
   /** Let it send what is new. */
