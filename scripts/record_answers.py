@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from record_folder import folder_bench
 from record_panels import record_questions
 from record_views import record_campaign, record_design, record_exercises, record_kept, record_theory
 from same_answer import is_same
@@ -246,6 +247,7 @@ def record(folder: Path = FOLDER) -> None:
                 record_kept(recorder, folder, bench)
             elif name == "seven-steps":
                 recorder.write(folder, "claims", recorder.get(f"/benches/{bench}/claims"))
+        recorder.write(folder, "folder", folder_bench("first-look"))
         record_design(recorder, folder)
         record_theory(recorder, folder)
         record_exercises(recorder, folder)

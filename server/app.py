@@ -13,6 +13,7 @@ from scenarios.extras import require
 from server import errors
 from server.api import (
     audit,
+    bench_files,
     benches,
     benchmarks,
     blind,
@@ -76,6 +77,7 @@ ROUTERS = (
     catalog,
     devices,
     scenarios,
+    bench_files,
     schemas,
     units,
     benches,

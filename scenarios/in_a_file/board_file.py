@@ -46,6 +46,7 @@ def board_document(board: Board, blocks: list[Any], writes: dict[str, Any], tick
         **_trips(board),
         "followed": _followed(board),
         "diagnosers": {name: _diagnoser(section) for name, section in board.spec.diagnosers.items()},
+        "scores": {name: _score(board, name) for name, one in board.spec.diagnosers.items() if scored(one.block)},
         **writes,
         "sensors": {"all": list(board.spec.sensors), "measuring": board.spec.measuring},
         "controllers": {name: section.block.title for name, section in board.spec.controllers.items()},
@@ -162,4 +163,18 @@ def _diagnoser(section: Section) -> dict[str, Any]:
         "scored": scored(section.block),
         "names": [one.name for one in hypotheses],
         "factors": [one.model_dump(exclude_defaults=True, exclude={"name"}) for one in hypotheses],
+    }
+
+
+def _score(board: Board, name: str) -> dict[str, Any]:
+    """Return where the score of a diagnoser is: its row, the places of its counters, and its two signals."""
+    wiring = board.wiring
+    layout = type(wiring.state(f"{name}.score")).layout
+    return {
+        "row": wiring.row(f"{name}.score"),
+        "names": names_of(board.spec.diagnosers[name].params),
+        "places": {field.name: layout.size if field.tail else field.offset for field in layout.fields},
+        "kept": {field.name: field.count for field in layout.fields if field.count},
+        "winner": wiring.index[f"{name}.winner"],
+        "unexplained": wiring.index[f"{name}.unexplained"],
     }

@@ -156,6 +156,8 @@ _DOORS = {
         POST {BENCH}/fork
         POST {BENCH}/variant
         POST {BENCH}/parameter-sets
+        GET {BENCH}/file.html
+        GET {API}/scenarios/{{scenario_id}}/file.html
         GET {BENCH}/audit
         POST GET {BENCH}/watchers
         DELETE {BENCH}/watchers/{{watcher_id}}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
     from scenarios.in_a_file.html import BuiltPage
     from scenarios.schema import Scenario
 
-WAYS = "--html FILE, --scorm FILE or --gallery DIR"
+WAYS = "--html FILE, --static DIR, --scorm FILE or --gallery DIR"
 
 
 @plainly
@@ -29,13 +31,20 @@ def fmu(
     from server.version import VERSION
 
     chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-    try:
+    with writing(out, "--out"):
         made = export(chosen, out, VERSION)
-    except OSError as error:
-        raise InputError(f"cannot write {out}: {error.strerror}", "--out") from None
     say(f"{out}, a step of {made.step_s:g} s, for {made.platform}")
     for reason in made.left_out:
         say(f"  without {reason}")
+
+
+@contextmanager
+def writing(path: Path, option: str) -> Iterator[None]:
+    """Refuse in one line what the system does not let be written."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}", option) from None
 
 
 @plainly
@@ -52,10 +61,14 @@ def export(
     gallery: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write the library as live pages with an index, for any host.")
     ] = None,
+    static: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Write the whole page with the bench into a folder for a static host."),
+    ] = None,
     assign: AssignOption = None,
 ) -> None:
-    """Write a scenario as a live bench in a file, which any browser runs without a server, with the same digest."""
-    if sum(way is not None for way in (html, scorm, gallery)) != 1:
+    """Write a scenario as a live bench that any browser runs without a server, with the same digest."""
+    if sum(way is not None for way in (html, scorm, gallery, static)) != 1:
         raise InputError("name one thing to write", "--html", WAYS)
     if sheet is not None and scorm is None:
         raise InputError("goes with --scorm", "--sheet")
@@ -69,11 +82,11 @@ def export(
         raise InputError("name the scenario", "scenario")
     else:
         chosen = with_values(load(scenario), dict(parse_assignment(text) for text in assign or []))
-        _exhibit(chosen, html, scorm)
+        _exhibit(chosen, html, scorm, static)
 
 
-def _exhibit(scenario: Scenario, html: Path | None, scorm: Path | None) -> None:
-    """Write a scenario with its published run, as a file or as a package."""
+def _exhibit(scenario: Scenario, html: Path | None, scorm: Path | None, static: Path | None) -> None:
+    """Write a scenario: with its published run as a file or a package, or with the whole page as a folder."""
     from scenarios.in_a_file.bench_file import bench_file
     from scenarios.in_a_file.html import html_of
     from scenarios.in_a_file.published import published
@@ -81,12 +94,19 @@ def _exhibit(scenario: Scenario, html: Path | None, scorm: Path | None) -> None:
     from server.version import VERSION
 
     made = bench_file(scenario)
-    built = _built()
-    text = html_of(made, built, VERSION, published=published(scenario))
-    if html is not None:
-        _write(html, text.encode(), "--html")
-    elif scorm is not None:
-        _write(scorm, package(scenario.id, made.document["title"], text), "--scorm")
+    if static is not None:
+        from server.api.page import DIST
+        from server.cli.folder import write_folder
+
+        with writing(static, "--static"):
+            size = write_folder(scenario, made, DIST, static, VERSION)
+        say(f"{static}, {size / 1e3:.0f} kB: put it on any static host, or serve it by python3 -m http.server")
+    else:
+        text = html_of(made, _built(), VERSION, published=published(scenario))
+        if html is not None:
+            _write(html, text.encode(), "--html")
+        elif scorm is not None:
+            _write(scorm, package(scenario.id, made.document["title"], text), "--scorm")
     for reason in made.left_out:
         say(f"  without {reason}")
 
@@ -119,10 +139,8 @@ def _gallery(folder: Path, pattern: str) -> None:
     names = [name for name in ids() if fnmatch(name, pattern)]
     if not names:
         raise InputError(f"no scenario matches {pattern!r}", "scenario")
-    try:
+    with writing(folder, "--gallery"):
         pages = write_gallery(folder, map(get, names), _built(), VERSION, say)
-    except OSError as error:
-        raise InputError(f"cannot write {folder}: {error.strerror}", "--gallery") from None
     say(f"{folder / 'index.html'}, {len(pages)} pages")
 
 
@@ -134,8 +152,6 @@ def _built() -> BuiltPage:
 
 
 def _write(file: Path, content: bytes, option: str) -> None:
-    try:
+    with writing(file, option):
         file.write_bytes(content)
-    except OSError as error:
-        raise InputError(f"cannot write {file}: {error.strerror}", option) from None
     say(f"{file}, {len(content) / 1e3:.0f} kB")

@@ -147,5 +147,5 @@ async def _start(worker: Processes) -> None:
 
 def load() -> None:
     """Load the code of all computations, in the process that computes."""
-    for name in ("devices", "diagnosers", "experiments", "records", "scenarios", "theory", "units"):
+    for name in ("bench_files", "devices", "diagnosers", "experiments", "records", "scenarios", "theory", "units"):
         import_module(f"server.api.{name}")

@@ -182,6 +182,9 @@ export const api = {
     data(client.PATCH("/api/v1/parameter-sets/{set_id}", { ...parameterSet(id), body: { name } })),
   removeParameterSet: (id: string) => data(client.DELETE("/api/v1/parameter-sets/{set_id}", parameterSet(id))),
   keep: (id: string) => data(client.POST("/api/v1/benches/{bench_id}/snapshots", { ...bench(id), body: {} })),
+  /** The bench as it is set now, as a file that runs without a server. */
+  benchFile: (id: string): Promise<string> =>
+    data(client.GET("/api/v1/benches/{bench_id}/file.html", { ...bench(id), parseAs: "text" })) as Promise<string>,
   scenarioToml: (id: string): Promise<string> =>
     data(client.GET("/api/v1/benches/{bench_id}/scenario", { ...bench(id), parseAs: "text" })) as Promise<string>,
 };

@@ -5,13 +5,21 @@ import type { ApiErrorBody } from "./types";
 
 const OFFLINE: ApiErrorBody = { code: "offline", message: "The server does not answer.", field: "", hint: "" };
 
+/** What answers the calls of the page: the network, or a worker that has it in place of a server. */
+let answering: (request: Request) => Promise<Response> = (request) => fetch(request);
+
+/** Let something else answer from now on. */
+export const setAnswering = (other: typeof answering): void => {
+  answering = other;
+};
+
 /** The server, typed by its own OpenAPI document; it is at the root of the page, which behind a proxy may be below a path. */
 export const client = createClient<paths>({ baseUrl: ".", fetch: reach });
 
 async function reach(request: Request): Promise<Response> {
   for (const [name, value] of Object.entries(sessionHeaders())) request.headers.set(name, value);
   try {
-    return await fetch(request);
+    return await answering(request);
   } catch {
     throw new ApiError(0, OFFLINE);
   }

@@ -2,13 +2,20 @@ import { create } from "zustand";
 import { client, data } from "./client";
 import type { Me } from "./types";
 
-/** A right: to change the bench on the page, or to do what a teacher does. */
-export type Right = "drive" | "teach";
+/**
+ * A right: to change the bench on the page, to have several benches and the past of each, to have what only a server does,
+ * or to do what a teacher does.
+ */
+export type Right = "drive" | "branch" | "server" | "teach";
 
-const RIGHTS: Record<Me["role"], readonly Right[]> = {
-  teacher: ["drive", "teach"],
-  student: ["drive"],
-  watcher: [],
+/** A reader has a bench from a folder, with a worker in place of the server. */
+export type Role = Me["role"] | "reader";
+
+const RIGHTS: Record<Role, readonly Right[]> = {
+  teacher: ["drive", "branch", "server", "teach"],
+  student: ["drive", "server"],
+  watcher: ["server"],
+  reader: ["drive", "branch"],
 };
 
 interface MeStore {
@@ -21,9 +28,9 @@ interface MeStore {
 export const useMe = create<MeStore>(() => ({ me: undefined, at: undefined }));
 
 /** Whether the person at this page has a right; the server decides, and the page leaves out the controls that it would refuse. */
-export function may(right: Right, role = useMe.getState().me?.role): boolean {
+export function may(right: Right, role: Role | undefined = useMe.getState().me?.role): boolean {
   if (role === undefined || !RIGHTS[role].includes(right)) return false;
-  return role !== "student" || !looksOn(useMe.getState());
+  return right === "server" || role !== "student" || !looksOn(useMe.getState());
 }
 
 /** Whether a student only watches the bench on the page: it is shown to all, and the student may not drive it. */
@@ -31,6 +38,11 @@ const looksOn = ({ me, at }: MeStore): boolean =>
   at !== undefined && at === me?.shown && at !== me.bench && at !== me.lent;
 
 export const useMay = (right: Right): boolean => useMe(({ me }) => may(right, me?.role));
+
+/** Whether a server is behind the page; until it is known who is at the page, there is one. */
+export const isServed = ({ me } = useMe.getState()): boolean => !me || may("server", me.role);
+
+export const useServed = (): boolean => useMe(isServed);
 
 /** Whether the page was opened by a link to watch, which shows one bench and nothing else of the server. */
 export const useWatches = (): boolean => useMe(({ me }) => me?.role === "watcher");

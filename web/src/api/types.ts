@@ -32,7 +32,8 @@ export type LinkWords = Schemas["Words"];
 export type LogEntry = Omit<Schemas["Event"], "command"> & { command?: Command | null };
 export type NewThreshold = Partial<Schemas["NewThreshold"]> &
   Pick<Schemas["NewThreshold"], "metric" | "path" | "low" | "high">;
-export type Parameter = Schemas["ParameterCard"];
+/** Of a bench without a server with the values that it can have, where it cannot have all. */
+export type Parameter = Schemas["ParameterCard"] & { grid?: number[] | null };
 /** Which points of a campaign are wanted, and in which order. */
 export type PointQuery = NonNullable<operations["get_sweep_points"]["parameters"]["query"]>;
 export type PositiveReal = Schemas["PositiveRealReport"];

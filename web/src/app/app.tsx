@@ -88,7 +88,7 @@ export function App() {
     const back = () => {
       showAddress();
       const id = benchInAddress();
-      if (may("teach") && id && id !== useBench.getState().bench?.id) showBench(id);
+      if (may("branch") && id && id !== useBench.getState().bench?.id) showBench(id);
     };
     window.addEventListener("popstate", back);
     return () => window.removeEventListener("popstate", back);

@@ -23,7 +23,7 @@ export function Banner() {
   const blind = useBench((s) => s.blind);
   const playing = useBench((s) => s.bench?.blind?.game);
   const drives = useMay("drive");
-  const teaches = useMay("teach");
+  const mayBranch = useMay("branch");
   const stale = useStaleSince();
 
   if (connection.phase === "closed" && connection.reason)
@@ -76,7 +76,7 @@ export function Banner() {
             Reset the trip
           </Button>
         )}
-        {teaches && <Button onClick={actions.forkBeforeTrip}>Fork from before</Button>}
+        {mayBranch && <Button onClick={actions.forkBeforeTrip}>Fork from before</Button>}
         {drives && <Button onClick={actions.reset}>Start over</Button>}
       </Line>
     );

@@ -2,6 +2,7 @@ import type { AddPanelOptions, DockviewApi } from "dockview-react";
 import { panelOf, type ViewName } from "../bench/panel-views";
 import type { LayoutName } from "../bench/view-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
+import { isHere } from "./panels";
 
 /** A scope of a layout, with its title. */
 interface Scope {
@@ -49,6 +50,7 @@ export function addTo(
   scope?: ScopeConfig,
   title?: string,
 ): void {
+  if (!isHere(view)) return;
   const [direction, referencePanel] = Object.entries(where)[0] ?? [];
   const options = {
     id,

@@ -1,11 +1,15 @@
 import { Button } from "@mantine/core";
 import { useLayoutEffect, useRef, useState } from "react";
+import { useServed } from "../api/me";
 import { showSentence, useNarrator } from "../bench/narrator";
 import { useBench } from "../stream/bench-store";
 import styles from "./strip.module.css";
 import { moreText, useCaption } from "./use-caption";
 
 const EVENTS = "Events are described here as they happen.";
+/** What a page has not whose bench comes from a folder. */
+const UNSERVED =
+  "This page computes the bench itself. The narrator, Why, other devices and scenarios, 3D, recordings, classes and campaigns need the server.";
 const LANES = "Each lane of Diagnosis is one guess at the device. A full lane means it is certain.";
 /** Lines of the row under the panels. */
 const LINES = 2;
@@ -13,11 +17,12 @@ const LINES = 2;
 /** The newest event in the words of the narrator, and before the first one the bench in a sentence. A click shows its place. */
 export function Caption({ intro }: { intro?: string }) {
   const on = useNarrator((s) => s.on);
+  const served = useServed();
   const caption = useCaption();
   const diagnosed = useBench((s) => Object.keys(s.bench?.diagnosers ?? {}).length > 0);
-  if (!on) return null;
+  if (!on && served) return null;
   const sentence = caption?.sentence;
-  const text = sentence?.text ?? intro ?? (diagnosed ? LANES : EVENTS);
+  const text = served ? (sentence?.text ?? intro ?? (diagnosed ? LANES : EVENTS)) : UNSERVED;
   return (
     // spoken by the page's live region, not here a second time
     <section className={styles.caption} aria-label="What happens now" data-kind={sentence?.kind}>

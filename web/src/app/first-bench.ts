@@ -18,7 +18,7 @@ const LONG_TICKS = 300_000;
 /** Open the experiment or the bench in the address, else the bench of this browser. A student or a watcher has one bench. */
 export async function openFirstBench(): Promise<void> {
   const { role } = await askMe();
-  if (role !== "teacher") return follow();
+  if (!may("branch", role)) return follow();
   const link = inAddress("link");
   if (link) return openLink(link, true);
   const named = benchInAddress();
@@ -72,7 +72,7 @@ export async function openOwnBench(): Promise<void> {
 
 /** Open a bench again that the server has closed because no page watched it. A student gets another bench. */
 export async function comeBack(): Promise<void> {
-  if (!may("teach")) return useMe.getState().me?.role === "student" ? follow() : undefined;
+  if (!may("branch")) return useMe.getState().me?.role === "student" ? follow() : undefined;
   const id = benchInAddress();
   if (id && (await broughtBack(id)) && benchInAddress() === id) showBench(id);
 }

@@ -8,14 +8,14 @@ export interface KeyBinding {
   withControl: boolean;
   does: string;
   group: "Run" | "Look" | "Bench" | "Pages";
-  /** The right that the key needs. */
-  needs?: Right;
+  /** The rights that the key needs. */
+  needs: Right[];
   run(): void;
 }
 
 /** Makes the keys of a group; a key shown with Ctrl needs it. */
 export const keyOf =
-  (group: KeyBinding["group"], needs?: Right) =>
+  (group: KeyBinding["group"], ...needs: Right[]) =>
   (key: string, shown: string, does: string, run: () => void): KeyBinding => ({
     key,
     shown,

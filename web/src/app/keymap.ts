@@ -19,7 +19,7 @@ import { themeSwitch } from "./theme";
 
 /** The keys of the person at the page; the sheet and the listener read the same list. */
 export const keymap = (): KeyBinding[] => {
-  const keys = KEYS.filter(({ needs }) => !needs || may(needs));
+  const keys = KEYS.filter(({ needs }) => needs.every((right) => may(right)));
   if (!lectureRuns()) return keys;
   const lecture = [...LECTURE_KEYS, NOTES];
   return [...lecture, ...keys.filter(({ key }) => !lecture.some((one) => one.key === key))];
@@ -27,7 +27,10 @@ export const keymap = (): KeyBinding[] => {
 
 const run = keyOf("Run", "drive");
 const bench = keyOf("Bench", "drive");
+const keep = keyOf("Bench", "drive", "server");
+const branch = keyOf("Bench", "branch");
 const teach = keyOf("Bench", "teach");
+const served = keyOf("Look", "server");
 const look = keyOf("Look");
 
 const NOTES = look("i", "I", "notes of the speaker in a window of their own", openPresenter);
@@ -42,13 +45,13 @@ const KEYS: KeyBinding[] = [
   run(">", ">", "skip to the next step of the scenario", actions.skip),
   bench("h", "H", "heal all faults", actions.healAll),
   bench("c", "C", "next controller", actions.nextController),
-  keyOf("Bench")("x", "X", "save what happened as a scenario", actions.saveScenario),
+  keyOf("Bench", "server")("x", "X", "save what happened as a scenario", actions.saveScenario),
   teach("S", "Shift S", "share by a link", actions.share),
-  bench("v", "V", "record, and stop", actions.record),
-  teach("f", "F", "fork", actions.fork),
+  keep("v", "V", "record, and stop", actions.record),
+  branch("f", "F", "fork", actions.fork),
   teach("k", "K", "keep this moment", actions.keep),
   teach("o", "O", "write a unit of your own", openEditor),
-  bench("n", "N", "new bench", actions.newBench),
+  keep("n", "N", "new bench", actions.newBench),
   bench("z", "Ctrl Z", "undo", () => takeBack("undo")),
   bench("y", "Ctrl Y", "redo", () => takeBack("redo")),
   bench("Z", "Ctrl Shift Z", "redo", () => takeBack("redo")),
@@ -57,15 +60,15 @@ const KEYS: KeyBinding[] = [
   look("2", "2", "lab layout", () => setLayout("lab")),
   look("3", "3", "research layout", () => setLayout("research")),
   look("s", "S", "slide of before and after the last change", makeSlide),
-  look("w", "W", "why the newest verdict", askLatest),
+  served("w", "W", "why the newest verdict", askLatest),
   look("p", "P", "present: panels only, on the whole screen", togglePresent),
-  look("q", "Q", "narrator on or quiet", toggleNarrator),
+  served("q", "Q", "narrator on or quiet", toggleNarrator),
   look("d", "D", "dark or light", () => themeSwitch.flip()),
   look("F6", "F6", "next group of panels", focusNextGroup),
   look("k", "Ctrl K", "search panels, scenarios, equations, devices, settings, places", openSearch),
   look("?", "?", "this sheet", actions.keys),
   ...Object.entries(PAGES).map(([name, { key, title, needs }]) =>
-    keyOf("Pages", needs)(key, key.toUpperCase(), title, () => actions.page(name as PageName)),
+    keyOf("Pages", ...(needs ? [needs] : []))(key, key.toUpperCase(), title, () => actions.page(name as PageName)),
   ),
 ];
 

@@ -27,13 +27,24 @@ Object.assign(window, { __webpack_nonce__: nonce });
 const root = document.getElementById("root");
 if (!root) throw new Error("the page has no #root");
 
-setStream(createStream(openSocket));
+/** Where the bench of a page without a server is. */
+const folder = document.querySelector<HTMLMetaElement>("meta[name=bench]")?.content;
 
 const page = createRoot(root);
-launch().then(
+begin().then(
   () => show(isPresenter() ? <Presenter /> : <App />),
   (error: unknown) => show(<NotLaunched error={error} />),
 );
+
+/** Connect the page to its server, or to the worker that has the bench of a folder. */
+async function begin() {
+  if (folder === undefined) {
+    setStream(createStream(openSocket));
+    return launch();
+  }
+  const { startFolder } = await import("../in-a-folder/start-folder");
+  setStream(createStream(startFolder(new URL(folder, document.baseURI))));
+}
 
 function show(content: ReactNode) {
   page.render(

@@ -7,8 +7,7 @@ import {
   IconSchool,
 } from "@tabler/icons-react";
 import type { ComponentType, ReactNode } from "react";
-import { may, type Right } from "../api/me";
-import type { Me } from "../api/types";
+import { may, type Right, type Role } from "../api/me";
 import type { PageName } from "../bench/places";
 import { ClassPage } from "../class/class-page";
 import { Designer } from "../designer/designer";
@@ -54,6 +53,7 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Gallery: every experiment with its claim and its measurement",
     icon: <IconPhoto size={ICON} />,
     key: "e",
+    needs: "server",
     component: GalleryPage,
   },
   runs: {
@@ -61,6 +61,7 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Headless runs, campaigns, and the scores of the diagnosers",
     icon: <IconChartHistogram size={ICON} />,
     key: "u",
+    needs: "server",
     component: Runs,
   },
   benchmark: {
@@ -68,6 +69,7 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Scores of the diagnosers on public cases",
     icon: <IconChartHistogram size={ICON} />,
     key: "j",
+    needs: "server",
     tabOf: "runs",
     component: Runs,
   },
@@ -76,6 +78,7 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Device designer",
     icon: <IconRulerMeasure size={ICON} />,
     key: "g",
+    needs: "server",
     component: Designer,
   },
   theory: {
@@ -83,12 +86,13 @@ export const PAGES: Record<PageName, PageKind> = {
     title: "Theory: stability, excitation and all equations",
     icon: <IconMathFunction size={ICON} />,
     key: "t",
+    needs: "server",
     component: Theory,
   },
 };
 
 /** Whether a page is offered to a role. */
-export const isOffered = (page: PageName, role: Me["role"] | undefined): boolean => {
+export const isOffered = (page: PageName, role: Role | undefined): boolean => {
   const { needs } = PAGES[page];
-  return !needs || may(needs, role);
+  return !needs || (role ? may(needs, role) : needs === "server"); // who is not known yet has a server
 };

@@ -1,4 +1,4 @@
-import { useMay } from "../api/me";
+import { useMay, useServed } from "../api/me";
 import type { ViewName } from "../bench/panel-views";
 import { useBench } from "../stream/bench-store";
 import { EmptyState } from "../ui/empty-state";
@@ -13,9 +13,12 @@ export function PanelBody({ view, params, setParams }: PanelProps & { view: View
   const replay = useBench((s) => s.bench?.replay_of);
   const question = useBench((s) => s.bench?.blind);
   const drives = useMay("drive");
+  const here = useServed() || kind.needs === undefined;
   return (
     <ErrorFence name={kind.title}>
-      {!fitting ? (
+      {!here ? (
+        <EmptyState title="Not without a server">This page computes its bench, and this view needs more.</EmptyState>
+      ) : !fitting ? (
         <EmptyState title="Not on this bench">
           {kind.only === "axes"
             ? `${kind.title} is for a gyroscope. Choose one in the designer and use it on the bench.`

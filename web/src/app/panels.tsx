@@ -1,5 +1,6 @@
 import type { ComponentType } from "react";
 import { hasAxes } from "../api/fits";
+import { isServed } from "../api/me";
 import type { Bench, Question } from "../api/types";
 import { type PanelName, panelOf, VIEWS, type ViewName } from "../bench/panel-views";
 import { AdaptationPanel } from "../panels/adaptation/adaptation-panel";
@@ -48,6 +49,8 @@ export interface PanelProps {
 /** One view of a panel. */
 interface View {
   title: string;
+  /** It shows what a server computes or keeps. */
+  needs?: "server";
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
   /** It works with the data that the server serves while a fault is hidden, always or for some questions. */
@@ -84,15 +87,15 @@ export const PANELS: Record<PanelName, Panel> = {
 
 /** Every view; a new one is its folder, its name in `VIEWS` and a line here. */
 export const VIEW: Record<ViewName, View> = {
-  device: { title: "Device", changes: true, component: DeviceView },
-  sensor: { title: "Sensor", changes: true, component: SensorView },
-  environment: { title: "Environment", changes: true, component: EnvironmentView },
-  board: { title: "Board", changes: true, component: BoardView },
+  device: { title: "Device", needs: "server", changes: true, component: DeviceView },
+  sensor: { title: "Sensor", needs: "server", changes: true, component: SensorView },
+  environment: { title: "Environment", needs: "server", changes: true, component: EnvironmentView },
+  board: { title: "Board", needs: "server", changes: true, component: BoardView },
   schematic: { title: "Diagram", component: SchematicPanel },
   card: { title: "Block", component: CardPanel },
   controllers: { title: "Choice", whileBlind: true, changes: true, component: ControllersPanel },
-  parameters: { title: "Parameters", changes: true, component: ParametersView },
-  sets: { title: "Sets", changes: true, component: SetsPanel },
+  parameters: { title: "Parameters", needs: "server", changes: true, component: ParametersView },
+  sets: { title: "Sets", needs: "server", changes: true, component: SetsPanel },
   adaptation: { title: "Adaptation", only: "displacement", component: AdaptationPanel },
   behaviour: { title: "Behaviour", only: "displacement", component: BehaviourPanel },
   faults: { title: "Faults", changes: true, component: FaultsPanel },
@@ -101,6 +104,7 @@ export const VIEW: Record<ViewName, View> = {
   phase: { title: "Phase plane", component: PhasePanel },
   identify: {
     title: "Frequency response",
+    needs: "server",
     only: "displacement",
     whileBlind: ({ game }) => !game,
     changes: true,
@@ -108,22 +112,22 @@ export const VIEW: Record<ViewName, View> = {
   },
   view3d: { title: "3D", component: View3dPanel },
   lanes: { title: "Lanes", whileBlind: ({ shows }) => shows.length > 0, component: LanesPanel },
-  hypotheses: { title: "Hypotheses", only: "displacement", changes: true, component: HypothesesPanel },
-  labs: { title: "Noise and memory", only: "displacement", changes: true, component: LabsPanel },
+  hypotheses: { title: "Hypotheses", needs: "server", only: "displacement", changes: true, component: HypothesesPanel },
+  labs: { title: "Noise and memory", needs: "server", only: "displacement", changes: true, component: LabsPanel },
   scores: { title: "Scoreboard", component: ScoreboardPanel },
-  why: { title: "Why", component: WhyPanel },
-  twins: { title: "Twins", changes: true, component: TwinsPanel },
+  why: { title: "Why", needs: "server", component: WhyPanel },
+  twins: { title: "Twins", needs: "server", changes: true, component: TwinsPanel },
   behind: { title: "Branches and runs", component: BehindView },
-  recordings: { title: "Recordings", component: RecordingsPanel },
-  narrator: { title: "Narrator", whileBlind: true, component: NarratorPanel },
+  recordings: { title: "Recordings", needs: "server", component: RecordingsPanel },
+  narrator: { title: "Narrator", needs: "server", whileBlind: true, component: NarratorPanel },
   events: { title: "Events", whileBlind: true, component: EventsPanel },
-  claims: { title: "Claims", component: ClaimsPanel },
-  sheet: { title: "Lab sheet", whileBlind: true, changes: true, component: SheetPanel },
-  vote: { title: "Vote", whileBlind: true, component: VotePanel },
-  blind: { title: "Hidden fault", whileBlind: true, changes: true, component: BlindPanel },
-  games: { title: "Games", whileBlind: true, changes: true, component: GamesPanel },
+  claims: { title: "Claims", needs: "server", component: ClaimsPanel },
+  sheet: { title: "Lab sheet", needs: "server", whileBlind: true, changes: true, component: SheetPanel },
+  vote: { title: "Vote", needs: "server", whileBlind: true, component: VotePanel },
+  blind: { title: "Hidden fault", needs: "server", whileBlind: true, changes: true, component: BlindPanel },
+  games: { title: "Games", needs: "server", whileBlind: true, changes: true, component: GamesPanel },
   locus: { title: "Motion", only: "axes", component: LocusPanel },
-  allan: { title: "Allan deviation", only: "axes", component: AllanPanel },
+  allan: { title: "Allan deviation", needs: "server", only: "axes", component: AllanPanel },
 };
 
 export type Benchlike = Pick<Bench, "axes"> | undefined;
@@ -132,21 +136,26 @@ export type Benchlike = Pick<Bench, "axes"> | undefined;
 export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>
   only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
 
+/** Whether a view has what it needs on this page. */
+export const isHere = (view: ViewName): boolean => VIEW[view].needs === undefined || isServed();
+
 /** Whether a view works while the answer to a question is hidden. */
 export const servedIn = ({ whileBlind }: Pick<View, "whileBlind">, question: Question): boolean =>
   typeof whileBlind === "function" ? whileBlind(question) : whileBlind === true;
 
 /** The views of a panel that suit a bench. */
 export const viewsOn = (panel: PanelName, bench: Benchlike): ViewName[] =>
-  VIEWS[panel].filter((view) => suits(VIEW[view], bench));
+  VIEWS[panel].filter((view) => isHere(view) && suits(VIEW[view], bench));
 
 /** The panels that suit a bench. */
 export const panelsOn = (bench: Benchlike): PanelName[] =>
   (Object.keys(VIEWS) as PanelName[]).filter((panel) => viewsOn(panel, bench).length > 0);
 
-/** The view that a panel shows: the chosen one if it is a view of the panel, else its first. */
+/** The view that a panel shows: the chosen one if it is a view of the panel, else the first that is here. */
 export const viewShown = (panel: PanelName, chosen: string | undefined): ViewName =>
-  chosen !== undefined && panelOf(chosen) === panel ? (chosen as ViewName) : VIEWS[panel][0];
+  chosen !== undefined && panelOf(chosen) === panel
+    ? (chosen as ViewName)
+    : ((VIEWS[panel] as readonly ViewName[]).find(isHere) ?? VIEWS[panel][0]);
 
 function Scope({ params, setParams }: PanelProps) {
   return <ScopePanel config={params.scope ?? scopeConfig([])} onChange={(scope) => setParams({ ...params, scope })} />;

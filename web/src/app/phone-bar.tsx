@@ -7,7 +7,7 @@ import {
   IconPlayerPlayFilled,
 } from "@tabler/icons-react";
 import type { ReactNode } from "react";
-import { useMay } from "../api/me";
+import { useMay, useServed } from "../api/me";
 import { actions } from "../bench/actions";
 import type { ViewName } from "../bench/panel-views";
 import { useView } from "../bench/view-store";
@@ -21,6 +21,7 @@ export function PhoneBar({ onMore }: { onMore(): void }) {
   const running = state === "running";
   const hides = useBench((s) => s.blind && !s.bench?.blind?.game);
   const drives = useMay("drive");
+  const served = useServed();
   return (
     // biome-ignore lint/a11y/useSemanticElements: a fieldset draws a frame
     <div className={styles.bar} role="group" aria-label="Bench">
@@ -42,7 +43,7 @@ export function PhoneBar({ onMore }: { onMore(): void }) {
           ) : (
             <Turn view="faults" words="Faults" icon={<IconAlertTriangle size={20} />} />
           )}
-          <Turn view="sheet" words="Lab sheet" icon={<IconFileText size={20} />} />
+          {served && <Turn view="sheet" words="Lab sheet" icon={<IconFileText size={20} />} />}
         </>
       )}
       <button type="button" className="bar-button" aria-haspopup="dialog" onClick={onMore}>

@@ -1,5 +1,5 @@
 import { IconSearch } from "@tabler/icons-react";
-import { useMe } from "../api/me";
+import { useMe, useServed } from "../api/me";
 import type { PageName } from "../bench/places";
 import { setPage, useView } from "../bench/view-store";
 import { isOffered, PAGES } from "./pages";
@@ -10,7 +10,9 @@ import { openSearch } from "./search/search";
 export function Rail() {
   const page = useView((s) => (s.lost ? undefined : (PAGES[s.page].tabOf ?? s.page)));
   const role = useMe((s) => s.me?.role);
+  const served = useServed();
   const offered = Object.entries(PAGES).filter(([id, { tabOf }]) => !tabOf && isOffered(id as PageName, role));
+  if (!served) return null; // the bench is the only page
   return (
     <nav className={`column ${styles.rail}`} aria-label="Pages">
       <button type="button" className="bar-button" title="Search (Ctrl K)" onClick={openSearch}>

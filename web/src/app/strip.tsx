@@ -1,7 +1,7 @@
 import { Box, Button, Popover } from "@mantine/core";
 import { IconChevronUp } from "@tabler/icons-react";
 import { useState } from "react";
-import { useMay } from "../api/me";
+import { useMay, useServed } from "../api/me";
 import { useLecture } from "../bench/lecture";
 import { toggleNarrator, useNarrator } from "../bench/narrator";
 import { useSteps } from "../bench/steps";
@@ -52,6 +52,8 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
   const narrates = useNarrator((s) => s.on);
   const said = useBench((s) => s.narration.sentences.length > 0);
   const scored = useScored();
+  const served = useServed();
+  if (!served && !hasSteps && !tips) return null;
   const label = hasSteps ? (scored.length > 0 ? "Findings" : "All steps") : tips ? "All hints" : "All sentences";
   return (
     <Popover opened={opened} onChange={setOpened} width="min(640px, 94vw)" position="top-end" shadow="md">
@@ -71,14 +73,16 @@ function Rest({ tips, hasSteps }: { tips: TickedHints | undefined; hasSteps: boo
       >
         {tips && <HintList tips={tips} />}
         {hasSteps && <Findings scored={scored} />}
-        {narrates && said && (
+        {served && narrates && said && (
           <Box flex="none" h={200}>
             <NarratorPanel />
           </Box>
         )}
-        <Button variant="subtle" style={{ alignSelf: "start" }} onClick={toggleNarrator}>
-          {narrates ? "Narrator off (Q)" : "Narrator on (Q)"}
-        </Button>
+        {served && (
+          <Button variant="subtle" style={{ alignSelf: "start" }} onClick={toggleNarrator}>
+            {narrates ? "Narrator off (Q)" : "Narrator on (Q)"}
+          </Button>
+        )}
       </Popover.Dropdown>
     </Popover>
   );

@@ -24,8 +24,8 @@ const MOST_STEP = 10_000;
 /** The time of the bench: dragged back, all panels show that moment, and another future can begin there. */
 export function TimeBar() {
   const bench = useBench((s) => s.bench);
-  const teaches = useMay("teach");
-  if (!bench || !teaches || bench.replay_of || bench.earliest_tick === null || bench.earliest_tick === undefined)
+  const mayBranch = useMay("branch");
+  if (!bench || !mayBranch || bench.replay_of || bench.earliest_tick === null || bench.earliest_tick === undefined)
     return null;
   return <Bar bench={bench} first={bench.earliest_tick} />;
 }

@@ -1,6 +1,6 @@
 import { Box, Button, CloseButton, Group } from "@mantine/core";
 import { IconPlayerPlayFilled, IconSquare, IconSquareCheckFilled } from "@tabler/icons-react";
-import { useMay } from "../api/me";
+import { useMay, useServed } from "../api/me";
 import { showPanel } from "../bench/dock";
 import { useBusy } from "../bench/use-busy";
 import { startBeside } from "./first-bench";
@@ -14,6 +14,7 @@ import type { TickedHints } from "./use-hints";
 /** The next thing to try on the bench. */
 export function TryThis({ tips }: { tips: TickedHints }) {
   const { hints, done } = tips;
+  const served = useServed();
   const at = hints.findIndex(({ id }) => !done.has(id));
   return (
     <section className={`line ${styles.lead}`} aria-label="Try this">
@@ -23,7 +24,7 @@ export function TryThis({ tips }: { tips: TickedHints }) {
         </strong>{" "}
         {hints[at]?.text}
       </p>
-      {tips.guided && <Guided {...tips.guided} />}
+      {served && <Guided {...tips.guided} />}
       <CloseButton size="sm" aria-label="Dismiss the hints" onClick={tips.dismiss} />
     </section>
   );
@@ -32,6 +33,7 @@ export function TryThis({ tips }: { tips: TickedHints }) {
 /** The bench in a sentence, all that can be tried on it, and what there is beside. */
 export function HintList({ tips }: { tips: TickedHints }) {
   const teaches = useMay("teach");
+  const served = useServed();
   return (
     <section aria-label="Things to try">
       <Box component="p" mb={6}>
@@ -48,7 +50,7 @@ export function HintList({ tips }: { tips: TickedHints }) {
       </ul>
       <Group gap={6} mt={8}>
         {teaches && !tourSeen() && <OfferTour />}
-        {tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
+        {served && tips.canHide && <Button onClick={() => showPanel("blind", "faults")}>Find a hidden fault</Button>}
       </Group>
     </section>
   );

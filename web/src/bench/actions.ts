@@ -58,6 +58,7 @@ export const actions = {
   keep: () => void keep(),
   record: () => void record(),
   saveScenario: () => void saveScenario(),
+  exportFile: () => void exportFile(),
 };
 
 function scale(factor: number): void {
@@ -103,5 +104,24 @@ const saveScenario = onBench(async (from) => {
     title: "Saved as a scenario",
     message: `Run it again with: combbench run ${name}. It gives the same bits${digest ? `, digest ${digest.slice(0, 12)}…` : ""}.`,
     autoClose: 15_000,
+  });
+});
+
+/** Save the bench as it is set now as a file that runs without a server. */
+const exportFile = onBench(async (from) => {
+  const id = "export";
+  notifications.show({
+    id,
+    loading: true,
+    autoClose: false,
+    title: "Making the file",
+    message: "Its blocks are compiled for browsers: seconds, and a minute or more the first time.",
+  });
+  const html = await api.benchFile(from.id).finally(() => notifications.hide(id));
+  saveFile(`${from.scenario_id || "bench"}.html`, new Blob([html], { type: "text/html" }));
+  notifications.show({
+    title: "Exported as a file",
+    message: "Any browser runs it, without a server and offline. It begins at tick 0.",
+    autoClose: 10_000,
   });
 });

@@ -24,6 +24,14 @@ export const benchInAddress = (): string | undefined => inAddress(PARAMETER);
 /** The bench this browser made last, to come back to. */
 export const ownBench = (): string | undefined => localStorage.getItem(OWN) ?? undefined;
 
+/** Forget it, and the bench in the address. */
+export function forgetOwnBench(): void {
+  localStorage.removeItem(OWN);
+  const url = new URL(window.location.href);
+  url.searchParams.delete(PARAMETER);
+  window.history.replaceState(null, "", url);
+}
+
 /** The links made in this browser. */
 export const ownLinks = (): string[] => JSON.parse(localStorage.getItem(MINE) ?? "[]") as string[];
 
@@ -32,9 +40,9 @@ export const noteOwnLink = (id: string): void => localStorage.setItem(MINE, JSON
 
 /** Show a bench made from this page, and come back to it from now on; the new bench of a student replaces the old one. */
 export function openOwn(id: string, replace = false): void {
-  const teaches = may("teach");
-  if (teaches) localStorage.setItem(OWN, id);
-  openBench(id, replace || !teaches);
+  const hasSeveral = may("branch");
+  if (hasSeveral) localStorage.setItem(OWN, id);
+  openBench(id, replace || !hasSeveral);
 }
 
 /** Show a bench and put it into the address, so that others can join it and back works. `keep`: see `stream.open`. */
@@ -76,7 +84,7 @@ export async function openReplay(recording: string): Promise<void> {
 export async function openInstead(id: string): Promise<void> {
   const { bench } = useBench.getState();
   // the previous bench of a student is gone
-  if (may("teach") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
+  if (may("branch") && bench?.state === "running" && (bench.watchers ?? 0) <= 1) await send({ kind: "pause" });
   openOwn(id);
 }
 

@@ -1,3 +1,4 @@
+import { isServed } from "../api/me";
 import { useBench } from "../stream/bench-store";
 import { stream } from "../stream/stream";
 import { panelWith, showBeside, showPanel } from "./dock";
@@ -15,6 +16,7 @@ function showWhy(): void {
 
 /** Ask for the reasons of a verdict at a sample; the panel Why opens beside or below the lanes. */
 export function pickSample(diagnoser: string, tick: number): void {
+  if (!isServed()) return; // a server works them out
   useView.setState({ sample: { diagnoser, tick: Math.max(0, tick) } });
   showWhy();
 }

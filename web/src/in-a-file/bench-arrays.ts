@@ -7,6 +7,8 @@ const COLUMNS = 4096;
 /** Most conditions that are watched at a time. */
 const WATCHES = 256;
 const SPARE = 1 << 20;
+/** The arrays that the next ticks depend on. */
+const NUMBERS = ["p", "s", "w", "io", "folds", "last"] as const;
 
 /** The arrays of a bench in the memory of its code, and the kernels over them. */
 export class BenchArrays {
@@ -75,6 +77,21 @@ export class BenchArrays {
     this.io.view.set(arrays.io);
     this.folds.view.set(folds);
     this.last.view.set(followed.last);
+  }
+
+  /** A copy of the numbers that the next ticks depend on. */
+  copy() {
+    return NUMBERS.map((name) => this[name].view.slice());
+  }
+
+  /** Take over such a copy. */
+  paste(copied: ReturnType<BenchArrays["copy"]>): void {
+    for (const [i, name] of NUMBERS.entries()) this[name].view.set(copied[i] as never);
+  }
+
+  /** Take over the history of another bench of the same document. */
+  adopt({ rings }: BenchArrays): void {
+    for (const [i, ring] of rings.entries()) if (ring !== this.rings[i]) this.rings[i].view.set(ring.view as never);
   }
 
   /** Run these rows from now on, in their order. */

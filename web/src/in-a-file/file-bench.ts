@@ -1,5 +1,5 @@
 import { BenchArrays } from "./bench-arrays";
-import { FileBoard } from "./file-board";
+import { type BoardCheckpoint, FileBoard } from "./file-board";
 import type { FileCommand, FileDiagnoser, FileDocument, FileEntry, FileSignal, TwinDocument } from "./file-document";
 import { digestOf } from "./sha";
 import { WasmRoom } from "./wasm-room";
@@ -11,6 +11,11 @@ const NOTED: Record<string, string> = { recognised: "recognised", tripped: "twin
 interface Place {
   twin: FileBoard<TwinDocument> | undefined;
   column: number;
+}
+
+/** The whole state of a bench at a tick edge, but for its history. */
+export interface FileCheckpoint extends BoardCheckpoint {
+  twins: Record<string, BoardCheckpoint>;
 }
 
 /** A live bench without a server: a board, and its twins, which carry out its commands at the same ticks. */
@@ -66,6 +71,27 @@ export class FileBench extends FileBoard<FileDocument> {
     super.reset(this.document.events);
     this.done = [...this.document.done];
     for (const twin of this.twins.values()) twin.reset();
+  }
+
+  /** A copy of all that the next ticks of all boards depend on. */
+  override checkpoint(): FileCheckpoint {
+    const twins = [...this.twins].map(([name, twin]) => [name, twin.checkpoint()]);
+    return { ...super.checkpoint(), twins: Object.fromEntries(twins) };
+  }
+
+  /** Go to a checkpoint with all boards. */
+  override restore({ twins, ...own }: FileCheckpoint, began = own.tick): void {
+    super.restore(own, began);
+    for (const [name, twin] of this.twins) twin.restore(twins[name], began);
+  }
+
+  /** Take over the history of another bench of the same document. */
+  adopt(other: FileBench): void {
+    this.arrays.adopt(other.arrays);
+    for (const [name, twin] of this.twins) {
+      const same = other.twins.get(name);
+      if (same) twin.arrays.adopt(same.arrays);
+    }
   }
 
   /** Run ticks of all; fewer when the board trips. A twin that trips rests until the board is reset. */

@@ -10,6 +10,9 @@ export interface FileTrip {
   reason: string;
 }
 
+/** The whole state of a board at a tick edge, but for its history. */
+export type BoardCheckpoint = ReturnType<FileBoard["checkpoint"]>;
+
 const MOST_ENTRIES = 2000;
 
 /** A board without a server: the ticks, commands at tick edges, a log, a digest. */
@@ -28,6 +31,9 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
   running = new Set<number>();
   /** The commands that have taken effect, each with its tick. */
   done: [number, FileCommand][] = [];
+  /** Called with each new entry of the log. */
+  heard: ((entry: FileEntry) => void) | undefined;
+  private began = 0;
   private readonly findings: Findings;
   private used = new Set<string>();
   private pending: FileEvent[] = [];
@@ -45,6 +51,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
     const { present, running, values, wirings } = this.document;
     this.arrays.reset();
     this.tick = 0;
+    this.began = 0;
     this.seq = 0;
     this.trip = undefined;
     this.log = [];
@@ -58,6 +65,41 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
     this.running = new Set(running);
     this.arrays.link(this.running);
     for (const entry of this.document.log) this.note(entry, entry.tick);
+  }
+
+  /** A copy of all that the next ticks depend on. */
+  checkpoint() {
+    const { tick, trip, driving, values, supervised, seq } = this;
+    const faults = new Map(this.faults);
+    const running = new Set(this.running);
+    const used = new Set(this.used);
+    const pending = this.pending.map((event) => ({ ...event }));
+    const done = [...this.done];
+    const numbers = this.arrays.copy();
+    return { tick, trip, driving, values, supervised, seq, faults, running, used, pending, done, numbers };
+  }
+
+  /** Go to a checkpoint; the past begins there, or at an earlier tick that the history has. */
+  restore(kept: BoardCheckpoint, began = kept.tick): void {
+    const { numbers, pending, done, faults, running, used, ...rest } = kept;
+    Object.assign(this, rest, { began });
+    this.done = [...done];
+    this.faults = new Map(faults);
+    this.running = new Set(running);
+    this.used = new Set(used);
+    this.pending = pending.map((event) => ({ ...event }));
+    this.arrays.paste(numbers);
+    this.arrays.link(this.running);
+  }
+
+  /** Let a command wait for its moment. */
+  wait(event: FileEvent): void {
+    this.pending = [...this.pending, event];
+  }
+
+  /** The commands that wait. */
+  get waiting(): readonly FileEvent[] {
+    return this.pending;
   }
 
   /** Run ticks; fewer when the board trips. */
@@ -109,13 +151,15 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
   /** Write an entry of the log. */
   note(entry: Omit<FileEntry, "seq" | "tick">, tick = this.tick): void {
     this.seq += 1;
-    this.log = [...this.log.slice(-MOST_ENTRIES), { seq: this.seq, tick, ...entry }];
+    const noted = { seq: this.seq, tick, ...entry };
+    this.log = [...this.log.slice(-MOST_ENTRIES), noted];
+    this.heard?.(noted);
   }
 
   /** The oldest tick of the past. */
   get oldest(): number {
     const { capacity, widest } = this.document.history;
-    return Math.max(0, this.tick - capacity + widest);
+    return Math.max(this.began, this.tick - capacity + widest);
   }
 
   /** Least and largest values of signals in each column of a span of ticks. */
@@ -151,7 +195,7 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
       if (event.when) this.pending.push({ ...event, tick: null });
       else {
         try {
-          this.apply(event.command, "scenario");
+          this.apply(event.command, event.actor ?? "scenario");
         } catch (error) {
           this.note({ actor: "board", kind: "refused", text: String((error as Error).message), old: null, new: null });
         }

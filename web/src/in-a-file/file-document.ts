@@ -59,6 +59,8 @@ export interface FileEvent {
   command: FileCommand;
   /** The place of a signal, 1 for above or -1 for below, and the threshold. */
   when?: [number, number, number];
+  /** Whose command it is, if it is not of the scenario. */
+  actor?: string;
 }
 
 export interface Told {
@@ -85,6 +87,17 @@ export interface FileDiagnoser {
   scored: boolean;
   names: string[];
   factors: Record<string, number>[];
+}
+
+/** Where the counters of a score are. */
+export interface FileScore {
+  row: number;
+  names: string[];
+  places: Record<string, number>;
+  /** How many numbers the lists among them have. */
+  kept: Record<string, number>;
+  winner: number;
+  unexplained: number;
 }
 
 /** The acts of a supervisor by the number of its request, the place of this number, and the values that they set. */
@@ -135,6 +148,7 @@ export interface BoardDocument {
   disengaged: number[];
   followed: { columns: BigInt64Array; last: Float64Array; told: Told[] };
   diagnosers: Record<string, FileDiagnoser>;
+  scores: Record<string, FileScore>;
   faults: Record<string, FileFault>;
   /** The faults that act from the first tick on. */
   present: Record<string, { severity: number; variant: number; since: number }>;

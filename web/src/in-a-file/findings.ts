@@ -1,3 +1,4 @@
+import { formatCount, formatSi } from "../ui/format";
 import type { BoardDocument, FileEntry, Told } from "./file-document";
 
 export type Finding = Pick<FileEntry, "kind" | "text" | "old" | "new">;
@@ -39,9 +40,13 @@ export class Findings {
       if (told.kind === "truth")
         return [{ kind: "truth_changed", text: `${name}: the truth is ${label}`, old: null, new: label }];
       if (value < 0) return [];
-      const text = value === 0 ? `${name} said ${label} already` : `${name} found ${label} after ${value} samples`;
+      const text = value === 0 ? `${name} said ${label} already` : `${name} found ${label} after ${this.time(value)}`;
       return [{ kind: "recognised", text, old: value, new: label }];
     });
+  }
+
+  private time(samples: number): string {
+    return `${formatCount(samples, "sample")} (${formatSi(samples * this.document.dt_ms, "ms", 3)})`;
   }
 
   private said({ kind, diagnoser = "", words = [], left, columns }: Told, value: number, signals: Float64Array) {

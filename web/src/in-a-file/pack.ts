@@ -8,8 +8,11 @@ const KINDS = {
 const ALIGNMENT = 8;
 
 /** Bytes from a text that the file has: compressed, in base 64. */
-export async function bytesOf(text: string): Promise<Uint8Array<ArrayBuffer>> {
-  const compressed = Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
+export const bytesOf = (text: string): Promise<Uint8Array<ArrayBuffer>> =>
+  inflated(Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0)));
+
+/** Bytes that were compressed. */
+export async function inflated(compressed: Uint8Array<ArrayBuffer>): Promise<Uint8Array<ArrayBuffer>> {
   const stream = new Blob([compressed]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }

@@ -1,5 +1,7 @@
 import type { components } from "../api/schema";
 import type { Bench, BlockCard, Lecture, LogEntry, Recording } from "../api/types";
+import type { FileDocument } from "../in-a-file/file-document";
+import type { FolderAnswers } from "../in-a-folder/folder-server";
 import type { Status } from "../stream/wire";
 
 type Schemas = components["schemas"];
@@ -88,3 +90,22 @@ export async function recordedBench(name: "first-look" | "seven-steps" | "gyrosc
 /** An answer of `scripts/record_answers.py`; each call gives a copy of its own. */
 export const recordedAnswer = <Name extends keyof RecordedAnswers>(name: Name): Promise<RecordedAnswers[Name]> =>
   read(name);
+
+const KINDS = {
+  float64: (numbers: (number | string)[]) => Float64Array.from(numbers, Number),
+  float32: (numbers: (number | string)[]) => Float32Array.from(numbers, Number),
+  int64: (numbers: (number | string)[]) => BigInt64Array.from(numbers, BigInt),
+  uint64: (numbers: (number | string)[]) => BigUint64Array.from(numbers, BigInt),
+};
+
+/** The first look as a bench in a folder. */
+export async function recordedFolder() {
+  const { code, document, answers } = await read("folder");
+  const arrays = (_: string, value: { array?: keyof typeof KINDS; numbers: number[] } | null) =>
+    value?.array ? KINDS[value.array](value.numbers) : value;
+  return {
+    code: Uint8Array.from(atob(code), (letter) => letter.charCodeAt(0)),
+    document: JSON.parse(JSON.stringify(document), arrays) as FileDocument,
+    answers: { ...answers, catalog: (await read("catalog")).blocks } as FolderAnswers,
+  };
+}

@@ -3,7 +3,7 @@ import { IconChevronDown, IconPlus, IconSchool, IconTrash } from "@tabler/icons-
 import { useEffect, useState } from "react";
 import { api } from "../../api/api";
 import { lectures } from "../../api/lectures";
-import { useMay } from "../../api/me";
+import { useMay, useServed } from "../../api/me";
 import { useAsked } from "../../api/queries";
 import type { Bench } from "../../api/types";
 import { actions } from "../../bench/actions";
@@ -25,6 +25,8 @@ export function BenchMenu() {
   const slow = useSlowPage() && !stale;
   const drives = useMay("drive");
   const teaches = useMay("teach");
+  const hasSeveral = useMay("branch");
+  const served = useServed();
   const [benches, setBenches] = useState<Bench[]>([]);
   const [name, rest] = (title ?? "No bench").split(/: (.*)/);
   const news = stale ? staleWords(stale) : slow ? "display lagging" : rate ? rest : "connecting";
@@ -52,7 +54,7 @@ export function BenchMenu() {
         </UnstyledButton>
       </Menu.Target>
       <Menu.Dropdown>
-        {drives && (
+        {drives && served && (
           <>
             <Menu.Item leftSection={<IconPlus size={16} />} onClick={actions.newBench}>
               New bench
@@ -61,14 +63,16 @@ export function BenchMenu() {
           </>
         )}
         {teaches && <Lectures />}
-        <Menu.Label>{teaches ? "On this server" : drives ? "Your bench" : "You watch"}</Menu.Label>
+        <Menu.Label>
+          {!served ? "In this page" : teaches ? "On this server" : drives ? "Your bench" : "You watch"}
+        </Menu.Label>
         {benches.map((b) => (
           <Menu.Item
             key={b.id}
             aria-current={b.id === id}
             fw={b.id === id ? 650 : undefined}
             onClick={() => b.id !== id && openBench(b.id)}
-            rightSection={b.id === id || !teaches ? undefined : <Remove bench={b} onDone={load} />}
+            rightSection={b.id === id || !hasSeveral ? undefined : <Remove bench={b} onDone={load} />}
           >
             {b.title}
             <small>

@@ -1,6 +1,6 @@
 import { Select } from "@mantine/core";
 import { type CSSProperties, useRef } from "react";
-import { useMay } from "../../api/me";
+import { useMay, useServed } from "../../api/me";
 import { WATCHING } from "../../bench/send";
 import { useBench } from "../../stream/bench-store";
 import { useBoardState } from "../../stream/freshness";
@@ -83,6 +83,8 @@ export function useLocked(): string | undefined {
 /** The same for what would help to find a hidden fault. */
 export function useLockedWhileHidden(): string | undefined {
   const isHidden = useBench((s) => Boolean(s.blind));
+  const served = useServed();
   const locked = useLocked();
+  if (!served) return "This page has no server, so its device and its sensor stay as they are.";
   return locked ?? (isHidden ? "A fault is hidden on this bench. Answer first." : undefined);
 }

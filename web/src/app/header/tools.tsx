@@ -1,7 +1,7 @@
 import { Button, Menu } from "@mantine/core";
 import { IconChevronDown, IconPlayerRecordFilled } from "@tabler/icons-react";
 import { classes } from "../../api/classes";
-import { may, type Right, useMay, useMe } from "../../api/me";
+import { may, type Right, useMay, useMe, useServed } from "../../api/me";
 import { isInFrame } from "../../api/session";
 import { useClasses } from "../../api/use-classes";
 import { actions } from "../../bench/actions";
@@ -30,19 +30,32 @@ export function Tools() {
   const narrates = useNarrator((s) => s.on);
   const role = useMe((s) => s.me?.role);
   const documents = useMe((s) => s.me?.documents);
+  const served = useServed();
   useMay("drive"); // which depends on the bench, too
   const bench: Tool[] = [
     { label: undo ? `Undo: ${undo} (Ctrl Z)` : "Undo (Ctrl Z)", needs: "drive", run: () => takeBack("undo") },
     { label: redo ? `Redo: ${redo} (Ctrl Y)` : "Redo (Ctrl Y)", needs: "drive", run: () => takeBack("redo") },
-    { label: recording ? "Stop recording (V)" : "Record every signal (V)", needs: "drive", run: actions.record },
-    { label: "Save this run as a scenario (X)", run: actions.saveScenario },
-    { label: "Fork: a copy of this bench from now on (F)", needs: "teach", run: actions.fork },
+    ...(served
+      ? ([
+          { label: recording ? "Stop recording (V)" : "Record every signal (V)", needs: "drive", run: actions.record },
+          { label: "Save this run as a scenario (X)", run: actions.saveScenario },
+        ] satisfies Tool[])
+      : []),
+    { label: "Export as a file that runs without a server", needs: "teach", run: actions.exportFile },
+    { label: "Fork: a copy of this bench from now on (F)", needs: "branch", run: actions.fork },
     { label: "Keep this moment on the timeline (K)", needs: "teach", run: actions.keep },
     { label: "Share this experiment by a link (Shift S)", needs: "teach", run: actions.share },
     ...show,
   ];
   const page: Tool[] = [
-    { label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)", run: toggleNarrator },
+    ...(served
+      ? [
+          {
+            label: narrates ? "Narrator off (Q)" : "Narrator on: describe events in sentences (Q)",
+            run: toggleNarrator,
+          },
+        ]
+      : []),
     { label: scheme === "dark" ? "Light theme (D)" : "Dark theme (D)", run: () => themeSwitch.flip() },
     { label: "Keyboard ( ? )", run: actions.keys },
   ];

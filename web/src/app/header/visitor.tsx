@@ -1,6 +1,6 @@
 import { Button } from "@mantine/core";
 import { IconHandStop } from "@tabler/icons-react";
-import { raiseHand, useMe } from "../../api/me";
+import { may, raiseHand, useMe } from "../../api/me";
 import { announce } from "../../bench/announce";
 import { showError } from "../../bench/send";
 import styles from "./header.module.css";
@@ -8,7 +8,7 @@ import styles from "./header.module.css";
 /** The person at the page: a student by name with a hand to raise, or a watcher; the teacher sees nothing here. */
 export function Visitor() {
   const me = useMe((s) => s.me);
-  if (!me || me.role === "teacher") return null;
+  if (!me || may("branch", me.role)) return null;
   if (me.role === "watcher") return <p className={`line ${styles.visitor}`}>You watch this bench</p>;
   const turn = () =>
     raiseHand(!me.hand).then(

@@ -1,7 +1,7 @@
 import { useMemo } from "react";
 import { useShallow } from "zustand/react/shallow";
 import { api } from "../../api/api";
-import { useMe } from "../../api/me";
+import { useMe, useServed } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import { useCatalog } from "../../api/use-catalog";
 import { addPanel, showPanel, useDock } from "../../bench/dock";
@@ -20,6 +20,7 @@ import type { Entry } from "./find";
 /** All that can be found on the page of a person. */
 export function useEntries(): Entry[] {
   const role = useMe((s) => s.me?.role);
+  const served = useServed();
   const axes = useBench(useShallow((s) => s.bench?.axes));
   const instances = useInstances();
   const { blocks, block } = useCatalog();
@@ -43,7 +44,7 @@ export function useEntries(): Entry[] {
         open: () => openView(view, hasSeveral(panel)),
       }),
     ),
-    ...(scenarios ?? []).map(
+    ...(served ? (scenarios ?? []) : []).map(
       ({ id, title }): Entry => ({
         group: "Scenarios",
         key: id,
@@ -52,7 +53,7 @@ export function useEntries(): Entry[] {
         open: () => openPlace("gallery", id),
       }),
     ),
-    ...(catalogue?.devices ?? []).map(
+    ...(served ? (catalogue?.devices ?? []) : []).map(
       ({ id, title, source }): Entry => ({
         group: "Devices",
         key: id,
@@ -78,7 +79,7 @@ export function useEntries(): Entry[] {
         }),
       );
     }),
-    ...equations.map(({ family, blocks: of, equation: { label, latex, source }, words }): Entry => {
+    ...(served ? equations : []).map(({ family, blocks: of, equation: { label, latex, source }, words }): Entry => {
       const title = `${of[0]} ${label.replaceAll("_", " ")}`;
       return {
         group: "Equations",

@@ -1,5 +1,6 @@
 import { Button, Checkbox, Group } from "@mantine/core";
 import { Fragment, useState } from "react";
+import { useServed } from "../../api/me";
 import type { Document, Parameter } from "../../api/types";
 import { showPanel } from "../../bench/dock";
 import { send } from "../../bench/send";
@@ -23,6 +24,7 @@ type Values = Record<string, unknown>;
 
 /** The parameters of blocks: change at once, or collect changes and apply them in one tick. */
 export function ParameterList({ blocks, document }: ParameterListProps) {
+  const served = useServed();
   const [collect, setCollect] = useState(false);
   const [staged, setStaged] = useState<Values>({});
   const rows = blocks.map((one) => ({
@@ -77,7 +79,7 @@ export function ParameterList({ blocks, document }: ParameterListProps) {
             Apply {count} in one tick
           </Button>
         )}
-        <Button onClick={() => showPanel("sets")}>Sets…</Button>
+        {served && <Button onClick={() => showPanel("sets")}>Sets…</Button>}
       </Group>
     </>
   );

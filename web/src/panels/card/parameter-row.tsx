@@ -1,11 +1,15 @@
 import { ActionIcon, Box, NativeSelect, Switch, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconLock } from "@tabler/icons-react";
+import { useServed } from "../../api/me";
 import type { Parameter } from "../../api/types";
 import { formatShort } from "../../ui/format";
 import { NumberField } from "../../ui/number-field";
 import { unitText } from "../../ui/unit-scale";
 import styles from "./card.module.css";
 import { parameterTitle } from "./parameter-title";
+
+const FIXED = "Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.";
+const FIXED_HERE = "Fixed: a change of it needs the server.";
 
 interface ParameterRowProps {
   parameter: Parameter;
@@ -17,6 +21,7 @@ interface ParameterRowProps {
 /** One parameter: its meaning, its value with unit, its default and limits, and whether it may change now. */
 export function ParameterRow({ parameter, value, staged, onChange }: ParameterRowProps) {
   const { meaning, live, type } = parameter;
+  const served = useServed();
   const label = parameterTitle(parameter);
   const isDefault = JSON.stringify(value) === JSON.stringify(parameter.default);
   const range = limits(parameter);
@@ -26,7 +31,7 @@ export function ParameterRow({ parameter, value, staged, onChange }: ParameterRo
         <Box component="span" className="line" fz="sm" fw={560}>
           {label}
           {!live && (
-            <Tooltip label="Fixed while the bench exists: it changes the wiring. Start a new bench to choose it.">
+            <Tooltip label={served ? FIXED : FIXED_HERE}>
               <IconLock size={12} role="img" aria-label="fixed while running" />
             </Tooltip>
           )}

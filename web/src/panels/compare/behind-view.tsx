@@ -2,6 +2,7 @@ import { ActionIcon, Box, Button, Checkbox, NativeSelect, Stack, TextInput } fro
 import { IconTrash, IconX } from "@tabler/icons-react";
 import { type ReactNode, useState } from "react";
 import { api } from "../../api/api";
+import { useServed } from "../../api/me";
 import { useAnswer } from "../../api/queries";
 import type { Bench } from "../../api/types";
 import {
@@ -57,11 +58,12 @@ export function BehindView() {
 
 function Sources({ bench }: { bench: Bench }) {
   const { behind, alignment, shaded, difference } = useBehind();
+  const served = useServed();
   const { value, error, since, again } = useAnswer(["behind", bench.id], async (): Promise<Candidates> => {
     const [benches, recordings, runs] = await Promise.all([
       api.benches(),
-      api.recordings(),
-      api.runs({ state: "done" }),
+      served ? api.recordings() : [],
+      served ? api.runs({ state: "done" }) : [],
     ]);
     return { benches, recordings: recordings.filter(({ dt_ms }) => dt_ms === bench.dt_ms), runs };
   });
@@ -99,14 +101,7 @@ function Sources({ bench }: { bench: Bench }) {
           data={[
             { value: "", label: "choose what to compare with" },
             { group: "Benches", items: others.map((one) => ({ value: `b ${one.id}`, label: longWords(one) })) },
-            {
-              group: "Recordings, played on a bench of their own",
-              items: sources.recordings.map(({ id, name }) => ({ value: `r ${id}`, label: name || id })),
-            },
-            {
-              group: "Headless runs, carried out again on a bench",
-              items: sources.runs.map(({ id, label, title }) => ({ value: `h ${id}`, label: label || title })),
-            },
+            ...(served ? keptItems(sources) : []),
           ]}
           onChange={(e) => add(e.currentTarget.value)}
         />
@@ -132,6 +127,18 @@ function Sources({ bench }: { bench: Bench }) {
     </>
   );
 }
+
+/** What the server has kept, to be played or carried out again. */
+const keptItems = ({ recordings, runs }: Candidates) => [
+  {
+    group: "Recordings, played on a bench of their own",
+    items: recordings.map(({ id, name }) => ({ value: `r ${id}`, label: name || id })),
+  },
+  {
+    group: "Headless runs, carried out again on a bench",
+    items: runs.map(({ id, label, title }) => ({ value: `h ${id}`, label: label || title })),
+  },
+];
 
 interface RowProps {
   id: string;

@@ -2,7 +2,7 @@ import { ActionIcon, Box, SegmentedControl } from "@mantine/core";
 import { IconGitBranch } from "@tabler/icons-react";
 import { useState } from "react";
 import { classes } from "../../api/classes";
-import { useMay } from "../../api/me";
+import { useMay, useServed } from "../../api/me";
 import { useList } from "../../api/queries";
 import type { LogEntry } from "../../api/types";
 import { useClasses } from "../../api/use-classes";
@@ -54,9 +54,10 @@ function Events() {
   const events = useBench((s) => s.events);
   const [shown, setShown] = useState(SHOWN);
   const earliest = useBench((s) => s.bench?.earliest_tick);
-  const teaches = useMay("teach");
+  const mayBranch = useMay("branch");
+  const served = useServed();
   const canBranch = ({ kind, tick }: LogEntry) =>
-    teaches && CHANGES.has(kind) && earliest !== null && earliest !== undefined && tick >= earliest;
+    mayBranch && CHANGES.has(kind) && earliest !== null && earliest !== undefined && tick >= earliest;
   const dtMs = useBench((s) => s.bench?.dt_ms) ?? 0;
   if (events.length === 0)
     return (
@@ -83,7 +84,7 @@ function Events() {
               <span className={styles.text}>{event.text}</span>
               <small>{event.actor}</small>
             </button>
-            {event.command && <CopyMenu event={event} />}
+            {event.command && served && <CopyMenu event={event} />}
             {canBranch(event) && (
               <ActionIcon
                 size="sm"

@@ -1,4 +1,5 @@
 import { Box, Button, Group, NumberInput, SegmentedControl, Stack } from "@mantine/core";
+import { useServed } from "../../api/me";
 import type { BlockCard, Parameter } from "../../api/types";
 import { type SeverityScale, severityText } from "../../bench/severity";
 import { Formula } from "../../ui/formula";
@@ -31,6 +32,9 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
   });
   const own = ownParameters(fault);
   const factor = scale.percent ? 100 : 1;
+  const served = useServed();
+  const grid = parameter?.grid ?? undefined;
+  const ends = grid ? [grid[0], grid[grid.length - 1]] : [scale.low, scale.high];
   const unit = scale.percent ? "%" : unitText(parameter?.unit ?? "");
   return (
     <Box p="0 12px 12px 27px">
@@ -45,17 +49,18 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
           <Slider
             flex={1}
             size="sm"
-            min={scale.low * factor}
-            max={scale.high * factor}
+            min={ends[0] * factor}
+            max={ends[1] * factor}
             step={scale.step}
+            restrictToMarks={grid !== undefined}
             value={Number(scaled(draft.severity, factor)) || 0}
             label={null}
             thumbLabel={`Severity of ${fault.title}`}
-            marks={[scale.low, 0, suggested, scale.high]
+            marks={(grid ?? [scale.low, 0, suggested, scale.high])
               .filter((v, i, all) => all.indexOf(v) === i)
               .map((v) => ({
                 value: v * factor,
-                label: v === scale.low || v === scale.high ? severityText(v, scale, parameter?.unit ?? "") : undefined,
+                label: v === ends[0] || v === ends[1] ? severityText(v, scale, parameter?.unit ?? "") : undefined,
               }))}
             onChange={(value) => set({ severity: scaled(value, 1 / factor) })}
             mb={18}
@@ -83,13 +88,15 @@ export function FaultForm({ fault, parameter, scale, suggested, draft, onChange,
             ))}
           </div>
         )}
-        <SegmentedControl
-          fullWidth
-          aria-label="How it comes"
-          value={draft.profile}
-          data={["step", "ramp", "intermittent"]}
-          onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
-        />
+        {served && (
+          <SegmentedControl
+            fullWidth
+            aria-label="How it comes"
+            value={draft.profile}
+            data={["step", "ramp", "intermittent"]}
+            onChange={(profile) => set({ profile: profile as FaultDraft["profile"] })}
+          />
+        )}
         {draft.profile === "ramp" && <NumberInput label="Over" suffix=" ms" min={0.01} {...number("durationMs")} />}
         {draft.profile === "intermittent" && (
           <Group grow gap="sm">

@@ -1,7 +1,7 @@
 import { Box, Button, NativeSelect } from "@mantine/core";
 import { useMemo, useRef, useState } from "react";
 import { fits } from "../../api/fits";
-import { useMay } from "../../api/me";
+import { useMay, useServed } from "../../api/me";
 import { useCatalog } from "../../api/use-catalog";
 import { openVariant } from "../../bench/open-bench";
 import { useBusy } from "../../bench/use-busy";
@@ -23,6 +23,7 @@ export function LanesPanel() {
   const signals = useBench((s) => s.bench?.signals);
   const unlabelled = useBench((s) => s.bench?.record?.labels.length === 0);
   const blind = useBench((s) => s.blind);
+  const served = useServed();
   const dtMs = useBench((s) => s.bench?.dt_ms);
   const usual = useRunWindow();
   const [chosenMs, setWindowMs] = useState<number | undefined>(undefined);
@@ -58,7 +59,7 @@ export function LanesPanel() {
             onChange={(e) => setWanted(e.currentTarget.value)}
           />
           <Box component="span" className="remark" flex="1 1 140px">
-            Click a sample to see why
+            {served && "Click a sample to see why"}
           </Box>
           {!one && <LaneTools time={time} onWindow={setWindowMs} take={() => picture.current?.()} />}
         </Box>

@@ -3,7 +3,7 @@ import { useDebouncedValue } from "@mantine/hooks";
 import { useMemo, useRef, useState } from "react";
 import { api } from "../../api/api";
 import { hasAxes } from "../../api/fits";
-import { useMay } from "../../api/me";
+import { useMay, useServed } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useAsked } from "../../api/queries";
 import type { UnstableRegion } from "../../api/types";
@@ -21,6 +21,7 @@ import { mapFits, mapWords } from "./unstable-map";
 /** One signal over another, with the map of the unstable region beneath travel and velocity. */
 export function PhasePanel() {
   const drives = useMay("drive");
+  const served = useServed();
   const signals = useBench((s) => s.bench?.signals);
   const plant = useBench((s) =>
     String((s.bench?.parameters.plant as { model?: string } | undefined)?.model ?? "linear"),
@@ -84,7 +85,7 @@ export function PhasePanel() {
           ) : flat ? (
             <>
               No unstable region: the {plant} plant cannot move sideways. The planar one can.{" "}
-              {drives && (
+              {drives && served && (
                 <Button
                   size="compact-xs"
                   variant="light"
@@ -97,6 +98,8 @@ export function PhasePanel() {
           ) : fits.folds ? (
             map ? (
               mapWords(map)
+            ) : !served ? (
+              "The map of the unstable region needs the server."
             ) : (
               "Working out the unstable region."
             )
@@ -114,6 +117,7 @@ const SETTLE_MS = 400;
 /** The map of the unstable region of the bench as it is now; asked for again when its device, air or faults change. */
 function useUnstableRegion(driveV: number): { map: UnstableRegion | undefined; failed: string | undefined } {
   const id = useBench((s) => s.bench?.id);
+  const served = useServed();
   const visible = usePanelVisible();
   const now = useBench((s) => {
     const { device, plant, environment } = s.bench?.parameters ?? {};
@@ -122,7 +126,7 @@ function useUnstableRegion(driveV: number): { map: UnstableRegion | undefined; f
   });
   const question = useMemo(() => ({ id, driveV, now }), [id, driveV, now]);
   const [settled] = useDebouncedValue(question, SETTLE_MS);
-  const { answer, refusal } = useAsked(settled.id && visible ? ["unstable region", settled] : undefined, () =>
+  const { answer, refusal } = useAsked(served && settled.id && visible ? ["unstable region", settled] : undefined, () =>
     api.unstableRegion(settled.id ?? "", settled.driveV),
   );
   return { map: answer, failed: refusal?.body.message };

@@ -1,6 +1,7 @@
 import { Menu } from "@mantine/core";
 import type { ReactNode, RefObject } from "react";
 import { ticketed } from "../../api/launch";
+import { useServed } from "../../api/me";
 import { PictureMenu } from "../../picture/picture-menu";
 import { useBench } from "../../stream/bench-store";
 import type { CaptureMark } from "../../stream/wire";
@@ -18,6 +19,7 @@ interface ExportMenuProps {
 
 /** Files of the scope: a picture with titled axes and events, or every sample of the span. */
 export function ExportMenu({ plot, capture, tools }: ExportMenuProps) {
+  const served = useServed();
   const take = () => {
     const { bench } = useBench.getState();
     const shown = plot.current?.picture();
@@ -40,13 +42,17 @@ export function ExportMenu({ plot, capture, tools }: ExportMenuProps) {
   };
   return (
     <PictureMenu take={take} tools={tools}>
-      <Menu.Divider />
-      <Menu.Label>Every sample of the span</Menu.Label>
-      {TRACE_FORMATS.map((format) => (
-        <Menu.Item key={format} onClick={() => trace(format)}>
-          {format.toUpperCase()}
-        </Menu.Item>
-      ))}
+      {served && (
+        <>
+          <Menu.Divider />
+          <Menu.Label>Every sample of the span</Menu.Label>
+          {TRACE_FORMATS.map((format) => (
+            <Menu.Item key={format} onClick={() => trace(format)}>
+              {format.toUpperCase()}
+            </Menu.Item>
+          ))}
+        </>
+      )}
     </PictureMenu>
   );
 }

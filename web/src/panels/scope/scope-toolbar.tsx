@@ -1,6 +1,7 @@
 import { Menu, NativeSelect } from "@mantine/core";
 import { IconRuler2, IconWaveSquare } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { useServed } from "../../api/me";
 import type { ScopeConfig } from "../../stream/scope-config";
 import { TIME_WINDOWS_MS, windowItems } from "../../ui/time-axis";
 import { LiveButton } from "./live-button";
@@ -22,6 +23,7 @@ interface ScopeToolbarProps {
 /** The bar of a scope: signals, time window, a menu of tools, live. */
 export function ScopeToolbar(props: ScopeToolbarProps) {
   const { config, onChange, past, onLive, trigger, onRearm, exporter, children } = props;
+  const served = useServed();
   const isTriggered = config.mode === "triggered";
   const hold = () => onChange({ ...config, mode: isTriggered ? "roll" : "triggered" });
   const measure = () => onChange({ ...config, measure: !config.measure });
@@ -46,9 +48,11 @@ export function ScopeToolbar(props: ScopeToolbarProps) {
         />
         {exporter(
           <>
-            <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
-              {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
-            </Menu.Item>
+            {served && (
+              <Menu.Item leftSection={<IconWaveSquare size={15} />} onClick={hold}>
+                {isTriggered ? "Let the picture roll again" : "Trigger: hold the picture at an edge"}
+              </Menu.Item>
+            )}
             <Menu.Item leftSection={<IconRuler2 size={15} />} onClick={measure}>
               {config.measure ? "Without cursors and figures" : "Measure: cursors A and B, and figures"}
             </Menu.Item>

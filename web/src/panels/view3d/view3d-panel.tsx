@@ -1,4 +1,5 @@
 import { useEffect, useRef } from "react";
+import { useServed } from "../../api/me";
 import { usePanelVisible } from "../../api/panel-visible";
 import { useBench } from "../../stream/bench-store";
 import { EmptyState } from "../../ui/empty-state";
@@ -14,8 +15,12 @@ export function View3dPanel() {
   const path = useBench((s) => s.bench?.view3d);
   const drawn = useWebgl();
   const hosted = usePlaces((s) => s.hosted);
+  const served = useServed();
   if (path === undefined) return <EmptyState title="No bench yet">The device appears here in 3D.</EmptyState>;
-  if (path === null) return <PlanView because="This server draws no 3D, so the device is drawn from above" />;
+  if (path === null)
+    return (
+      <PlanView because={`This ${served ? "server draws" : "page has"} no 3D, so the device is drawn from above`} />
+    );
   if (!drawn) return <PlanView because="This browser has no WebGL, so the device is drawn from above" />;
   return hosted ? <Place /> : <OwnView key={path} path={`.${path}`} />;
 }
