@@ -62,7 +62,6 @@ SAME = (
     "controller",
     "slots",
     "faults",
-    "pending",
     "trip",
     "scores",
     "recording",
@@ -124,6 +123,11 @@ def _events(said: list[dict[str, Any]]) -> list[tuple[Any, ...]]:
     return [(one["tick"], one["kind"], one["text"].replace("\xa0", " ")) for one in events]
 
 
+def _waiting(status: dict[str, Any]) -> list[tuple[Any, ...]]:
+    """Return the commands that wait; their words write numbers in two languages."""
+    return [(one["tick"], one["when"], one["actor"]) for one in status["pending"]]
+
+
 def test_one_transcript_gives_the_same_messages_and_pictures(live: Any, made: BenchFile) -> None:
     by_worker, by_server = _of_worker(made, LINES), _of_server(live)
     pictures = 0
@@ -149,6 +153,7 @@ def test_one_transcript_gives_the_same_messages_and_pictures(live: Any, made: Be
         if line["type"] == "command" and (ended := _of_type(other, "status")):
             mine = _of_type(own, "status")[-1]
             assert {name: mine[name] for name in SAME} == {name: ended[-1][name] for name in SAME}, line
+            assert _waiting(mine) == _waiting(ended[-1]), line
     assert pictures > 8
 
 

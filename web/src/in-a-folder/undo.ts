@@ -9,7 +9,9 @@ interface Change {
   back: FileCommand[];
 }
 
-type Before = Pick<FileBench, "driving" | "values"> & { faults: ReadonlyMap<string, { severity: number; variant: number }> };
+type Before = Pick<FileBench, "driving" | "values"> & {
+  faults: ReadonlyMap<string, { severity: number; variant: number }>;
+};
 
 /** What a command changes, as it was before. */
 export const stateOf = ({ faults, driving, values }: FileBench): Before => ({
