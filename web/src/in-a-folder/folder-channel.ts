@@ -97,9 +97,10 @@ export class FolderChannel {
       this.say({ type: "reply", id, ok: false, error: refusalOf(error as Error) });
       return;
     }
+    const tick = this.bench.events.at(-1)?.tick; // of a step the tick at which it began
     this.events();
     this.status();
-    this.say({ type: "reply", id, ok: true, tick: this.bench.file.tick });
+    this.say({ type: "reply", id, ok: true, tick });
   }
 
   /** Send the events that are new; whether there are any. */
