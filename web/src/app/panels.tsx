@@ -49,7 +49,7 @@ export interface PanelProps {
 /** One view of a panel. */
 interface View {
   title: string;
-  /** It shows what a server computes or keeps. */
+  /** A server computes or keeps its contents. */
   needs?: "server";
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;

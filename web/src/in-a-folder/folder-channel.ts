@@ -60,7 +60,7 @@ export class FolderChannel {
     this.waiting -= 1;
   }
 
-  /** Send what is new: events and status, and a picture if the page takes one. A page that lags gets the newest later. */
+  /** Send new events, the status, and a picture if the page takes it. A page that lags gets the newest later. */
   flush(now: number): void {
     if (this.waiting > MOST_WAITING) return;
     if (this.events() || now - this.told >= STATUS_MS) {

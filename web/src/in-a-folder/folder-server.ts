@@ -61,7 +61,7 @@ export class FolderServer {
     (await this.make()).begin();
   }
 
-  /** Run what is due, and send what is new. */
+  /** Run the ticks that are due, and send the news. */
   turn(now: number): void {
     for (const bench of this.benches.values()) bench.turn(now);
     for (const channel of this.channels.values()) channel.flush(now);
