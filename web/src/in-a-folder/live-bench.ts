@@ -213,7 +213,14 @@ export class LiveBench {
   describe(): Bench {
     const { dt_ms, history } = this.file.document;
     const { id, name } = this;
-    const own = { id, name, created: this.created, dt_ms, history_ticks: history.capacity, parameters: this.parameters };
+    const own = {
+      id,
+      name,
+      created: this.created,
+      dt_ms,
+      history_ticks: history.capacity,
+      parameters: this.parameters,
+    };
     return { ...this.fixed, ...this.status(), ...own } as unknown as Bench;
   }
 
