@@ -40,7 +40,7 @@ def fmu(
 
 @contextmanager
 def writing(path: Path, option: str) -> Iterator[None]:
-    """Refuse in one line what the system does not let be written."""
+    """Refuse in one line a file that the system does not let be written."""
     try:
         yield
     except OSError as error:

@@ -1,7 +1,8 @@
 import { execFile } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createServer, type Server } from "node:http";
 import type { AddressInfo } from "node:net";
+import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import { promisify } from "node:util";
 import { test as base, expect } from "@playwright/test";
@@ -42,12 +43,13 @@ interface FolderFixtures {
 export const test = base.extend<FolderFixtures, { address: string }>({
   address: [
     // biome-ignore lint/correctness/noEmptyPattern: the fixture depends on no other
-    async ({}, use, info) => {
-      const folder = info.project.outputDir.concat("-folder-", String(process.pid));
+    async ({}, use) => {
+      const folder = mkdtempSync(join(tmpdir(), "combbench-folder-"));
       await promisify(execFile)(COMBBENCH, ["export", "first-look", "--static", folder], { timeout: EXPORT_MS });
       const { server, address } = await host(folder);
       await use(address);
       server.close();
+      rmSync(folder, { recursive: true });
     },
     { scope: "worker", timeout: EXPORT_MS },
   ],

@@ -3,8 +3,8 @@ import { client, data } from "./client";
 import type { Me } from "./types";
 
 /**
- * A right: to change the bench on the page, to have several benches and the past of each, to have what only a server does,
- * or to do what a teacher does.
+ * A right: to change the bench on the page, to have several benches and the past of each, to use a server,
+ * or to teach.
  */
 export type Right = "drive" | "branch" | "server" | "teach";
 
@@ -39,7 +39,7 @@ const looksOn = ({ me, at }: MeStore): boolean =>
 
 export const useMay = (right: Right): boolean => useMe(({ me }) => may(right, me?.role));
 
-/** Whether a server is behind the page; until it is known who is at the page, there is one. */
+/** Whether a server is behind the page, as is assumed until the person is known. */
 export const isServed = ({ me } = useMe.getState()): boolean => !me || may("server", me.role);
 
 export const useServed = (): boolean => useMe(isServed);

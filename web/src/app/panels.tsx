@@ -49,7 +49,7 @@ export interface PanelProps {
 /** One view of a panel. */
 interface View {
   title: string;
-  /** It shows what a server computes or keeps. */
+  /** A server computes or keeps its contents. */
   needs?: "server";
   /** It does something to the bench, which a recording that is played does not allow. */
   changes?: boolean;
@@ -74,7 +74,7 @@ export const PANELS: Record<PanelName, Panel> = {
   faults: { title: "Faults", about: "Inject faults and remove them" },
   scope: { title: "Scope", about: "Signals over time, as a spectrum or in the phase plane" },
   response: { title: "Frequency response", about: "Sweep the device with a sine and fit mass, spring and damping" },
-  view3d: { title: "3D", about: "The moving device in three dimensions" },
+  view3d: { title: "3D", about: "The moving device, in three dimensions or from above" },
   diagnosis: { title: "Diagnosis", about: "Probability of each hypothesis, and how often the verdict is right" },
   why: { title: "Why", about: "The numbers behind one verdict" },
   compare: { title: "Compare", about: "Twins, branches, recordings and past runs beside the bench" },

@@ -22,7 +22,10 @@ it("tells nothing of signals that stay, also where they are no numbers", () => {
 });
 
 it("tells a change of the truth before its recognition, whatever the order of the signals", () => {
-  expect(look([-1, 0, 0, 0], 12, 1, 0, 0, 0, 0)).toEqual(["bank: the truth is m+5", "bank found m+5 after 12\u00a0samples (120\u00a0µs)"]);
+  expect(look([-1, 0, 0, 0], 12, 1, 0, 0, 0, 0)).toEqual([
+    "bank: the truth is m+5",
+    "bank found m+5 after 12\u00a0samples (120\u00a0µs)",
+  ]);
   expect(look([3, 1, 0, 0], -1, -2, 0, 0, 0, 0)).toEqual(["bank: the truth is none of the hypotheses"]);
 });
 

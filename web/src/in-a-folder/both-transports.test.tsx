@@ -11,8 +11,8 @@ import type { PanelFrame } from "../stream/panel-frame";
 import { stream } from "../stream/stream";
 import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
-import { drawOnce } from "../testing/jsdom-gaps";
 import { FolderBoard } from "../testing/folder-board";
+import { drawOnce } from "../testing/jsdom-gaps";
 import { recordedAnswer, recordedBench } from "../testing/recorded";
 import { mount, words } from "../testing/render";
 
@@ -95,7 +95,9 @@ describe.each(BOARDS)("over %s", (_, open) => {
   it("lists what happened, newest first", async () => {
     await open();
     mount(<EventsPanel />);
-    const texts = (await screen.findAllByTitle(/^Tick/)).map((one) => one.querySelector("span:nth-child(3)")?.textContent);
+    const texts = (await screen.findAllByTitle(/^Tick/)).map(
+      (one) => one.querySelector("span:nth-child(3)")?.textContent,
+    );
     const told = recorded.events.filter(({ kind }) => !["opened", "step"].includes(kind)).map(({ text }) => text);
     expect(texts.filter((text) => told.includes(text ?? ""))).toEqual(told.reverse());
   });
@@ -124,7 +126,9 @@ it("heals, takes it back and refuses what a folder has not, in words", async () 
   await board.command({ heal: "all" });
   expect(useBench.getState().bench).toMatchObject({ faults: [], undo: { text: "heal all" } });
   await board.command({ kind: "undo" });
-  expect(useBench.getState().bench?.faults.map(({ name, severity }) => [name, severity])).toEqual([["added_mass", 0.05]]);
+  expect(useBench.getState().bench?.faults.map(({ name, severity }) => [name, severity])).toEqual([
+    ["added_mass", 0.05],
+  ]);
   const ramp = { ...MASS, profile: { kind: "ramp", duration_ms: 5 } } as const;
   await expect(stream.client.command(ramp as never)).rejects.toThrow("comes as a step of its usual kind");
   await expect(stream.client.command({ set: { "plant.model": "planar" } })).rejects.toThrow("without a server");

@@ -60,7 +60,7 @@ export class FolderChannel {
     this.waiting -= 1;
   }
 
-  /** Send what is new: events and status, and a picture if the page takes one. A page that lags gets the newest later. */
+  /** Send new events, the status, and a picture if the page takes it. A page that lags gets the newest later. */
   flush(now: number): void {
     if (this.waiting > MOST_WAITING) return;
     if (this.events() || now - this.told >= STATUS_MS) {
@@ -73,15 +73,17 @@ export class FolderChannel {
   private subscribe({ type: _, panel, ...subscription }: Extract<ClientMessage, { type: "subscribe" }>): void {
     const names = this.bench.file.signals.map(({ name }) => name);
     const signals = subscription.signals.map((name) => names.indexOf(name));
-    const unknown = subscription.signals[signals.indexOf(-1)];
-    if (unknown !== undefined) return this.refuse(`there is no signal ${unknown}`, "signals");
-    if (subscription.mode === "triggered") return this.refuse("a bench without a server has no trigger", "mode");
     const { behind = [] } = subscription;
+    const unknown = subscription.signals[signals.indexOf(-1)];
     const gone = behind.findIndex(({ bench }) => !this.find(bench));
-    if (gone >= 0) return this.refuse(`there is no bench ${behind[gone].bench}`, `behind.${gone}`);
-    const revision = (this.revisions.get(panel) ?? 0) + 1;
-    this.revisions.set(panel, revision);
-    this.panels.set(panel, { subscription, signals, behind, revision, sent: "" });
+    if (unknown !== undefined) this.refuse(`there is no signal ${unknown}`, "signals");
+    else if (subscription.mode === "triggered") this.refuse("a bench without a server has no trigger", "mode");
+    else if (gone >= 0) this.refuse(`there is no bench ${behind[gone].bench}`, `behind.${gone}`);
+    else {
+      const revision = (this.revisions.get(panel) ?? 0) + 1;
+      this.revisions.set(panel, revision);
+      this.panels.set(panel, { subscription, signals, behind, revision, sent: "" });
+    }
   }
 
   private refuse(message: string, field: string): void {
@@ -95,9 +97,10 @@ export class FolderChannel {
       this.say({ type: "reply", id, ok: false, error: refusalOf(error as Error) });
       return;
     }
+    const tick = this.bench.events.at(-1)?.tick; // of a step the tick at which it began
     this.events();
     this.status();
-    this.say({ type: "reply", id, ok: true, tick: this.bench.file.tick });
+    this.say({ type: "reply", id, ok: true, tick });
   }
 
   /** Send the events that are new; whether there are any. */

@@ -61,7 +61,7 @@ export class FolderServer {
     (await this.make()).begin();
   }
 
-  /** Run what is due, and send what is new. */
+  /** Run the ticks that are due, and send the news. */
   turn(now: number): void {
     for (const bench of this.benches.values()) bench.turn(now);
     for (const channel of this.channels.values()) channel.flush(now);
@@ -131,8 +131,8 @@ export class FolderServer {
     if (deed !== "commands") return absent();
     if (body.kind === "seek") await this.seek(bench, Number(body.tick));
     else bench.execute(body as never);
-    const tick = bench.file.tick;
-    return found({ tick, time_ms: tick * this.document.dt_ms, entry: bench.events.at(-1) });
+    const entry = bench.events[bench.events.length - 1];
+    return found({ tick: entry.tick, time_ms: entry.tick * this.document.dt_ms, entry });
   }
 
   /** Make a bench that continues from a tick of the past of another, or from now. */

@@ -212,8 +212,15 @@ export class LiveBench {
   /** The bench in full. */
   describe(): Bench {
     const { dt_ms, history } = this.file.document;
-    const { id, name, created } = this;
-    const own = { id, name, created, dt_ms, history_ticks: history.capacity, parameters: this.parameters };
+    const { id, name } = this;
+    const own = {
+      id,
+      name,
+      created: this.created,
+      dt_ms,
+      history_ticks: history.capacity,
+      parameters: this.parameters,
+    };
     return { ...this.fixed, ...this.status(), ...own } as unknown as Bench;
   }
 
@@ -288,6 +295,9 @@ function wordsOf(command: FileCommand): string {
   if ("fault" in command) return `inject ${command.fault} ${command.severity < 0 ? "" : "+"}${command.severity}`;
   if ("heal" in command) return `heal ${command.heal === "all" ? "all" : command.heal.join(", ")}`;
   if ("switch" in command) return `switch to ${command.switch}`;
-  if ("set" in command) return `set ${Object.keys(command.set).join(", ")}`;
+  if ("set" in command)
+    return `set ${Object.entries(command.set)
+      .map(([path, value]) => `${path} = ${value}`)
+      .join(", ")}`;
   return "reset after the trip";
 }

@@ -38,10 +38,10 @@ export class LiveTime {
 
   /** Run the ticks that are due; whether the scenario has ended with them. */
   turn(now: number, follow: () => void): boolean {
-    const { pace, file } = this;
-    pace.isRunning = this.isRunning;
-    pace.scale = this.reason ? null : this.scale;
-    pace.run(now, (n) => {
+    const { file } = this;
+    this.pace.isRunning = this.isRunning;
+    this.pace.scale = this.reason ? null : this.scale;
+    this.pace.run(now, (n) => {
       const end = Math.min(this.endsAt, this.reason ? this.fastTo : Number.POSITIVE_INFINITY);
       const ran = file.advance(Math.max(0, Math.min(n, end - file.tick)));
       follow();

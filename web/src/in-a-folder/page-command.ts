@@ -47,7 +47,7 @@ function fileCommand(bench: FileBench, command: BoardCommand): FileCommand {
   throw new Error("a bench without a server has no such command");
 }
 
-/** The course and the parameters of a fault: those of a step, or those that an event of the scenario has. */
+/** The variant of a fault: a step, or the course and the parameters of an event of the scenario. */
 function variantOf(bench: FileBench, { fault, profile, parameters = {} }: Fault): number {
   const { variants = [] } = bench.document.faults[fault] ?? {};
   const wanted: Record<string, unknown> = { ...profile };
@@ -61,7 +61,7 @@ function variantOf(bench: FileBench, { fault, profile, parameters = {} }: Fault)
   return Math.max(found, 0);
 }
 
-/** The severity; that of a grid where it differs in its last digits alone. */
+/** The severity, or the severity of the grid from which it differs in its last digits alone. */
 function severityOf(bench: FileBench, { fault, severity }: Fault, variant: number): number {
   const { grid = [] } = bench.document.faults[fault]?.variants[variant].dependence ?? {};
   return grid.find((one) => Math.abs(one - severity) <= NEAR * Math.abs(one)) ?? severity;

@@ -10,7 +10,12 @@ type Line = ClientMessage | { method: string; path: string; body?: Record<string
 const CHANNEL = 1;
 
 /** Play the lines of a page on the server of a folder; all that it says to each of them, frames in base 64. */
-export async function rehearse(code: string, pack: string, answers: FolderAnswers, lines: Line[]): Promise<unknown[][]> {
+export async function rehearse(
+  code: string,
+  pack: string,
+  answers: FolderAnswers,
+  lines: Line[],
+): Promise<unknown[][]> {
   let said: unknown[] = [];
   const server = new FolderServer(
     await bytesOf(code),

@@ -70,7 +70,7 @@ export class Track {
     return (this.deeds.at(-1)?.tick ?? -1) >= tick;
   }
 
-  /** The track of a bench that stands at a tick of this past and goes on from there. */
+  /** The track of a bench that is at a tick of this past and continues from there. */
   until(bench: FileBench): Track {
     const isBefore = ({ tick }: { tick: number }) => tick < bench.tick;
     const track = new Track(this.marks.filter(isBefore), this.deeds.filter(isBefore));
@@ -79,7 +79,7 @@ export class Track {
   }
 
   /**
-   * Let a bench stand at a tick of this past, by way of a checkpoint at a tick `from` or before; `began`: the first tick of
+   * Take a bench to a tick of this past, by way of a checkpoint at a tick `from` or before; `began`: the first tick of
    * the history that the bench has already. The deeds at the tick itself can be left out.
    */
   replay(bench: FileBench, tick: number, { from, began, isBefore }: Way): void {

@@ -9,16 +9,18 @@ interface Change {
   back: FileCommand[];
 }
 
-type Before = Pick<FileBench, "driving" | "values"> & { faults: ReadonlyMap<string, { severity: number; variant: number }> };
+type Before = Pick<FileBench, "driving" | "values"> & {
+  faults: ReadonlyMap<string, { severity: number; variant: number }>;
+};
 
-/** What a command changes, as it was before. */
+/** The parts of a bench that commands change, as they are before a command. */
 export const stateOf = ({ faults, driving, values }: FileBench): Before => ({
   faults: new Map(faults),
   driving: { ...driving },
   values: { ...values },
 });
 
-/** The commands that take another back; none for one that cannot be taken back. */
+/** The commands that take a command back, if it can be taken back. */
 export function inverseOf(command: FileCommand, { faults, driving, values }: Before, slot: string): FileCommand[] {
   const inject = (name: string): FileCommand[] => {
     const found = faults.get(name);
@@ -34,7 +36,7 @@ export function inverseOf(command: FileCommand, { faults, driving, values }: Bef
   return [];
 }
 
-/** The changes of a bench that can be taken back, and those that were. */
+/** The changes of a bench that can be taken back, and the changes that can be made again. */
 export class Changes {
   private done: Change[] = [];
   private undone: Change[] = [];

@@ -16,7 +16,7 @@ const part = async (name: string) => {
   return inflated(new Uint8Array(await answer.arrayBuffer()));
 };
 
-/** What the page asks before the bench is here waits. */
+/** Questions of the page wait until the bench is here. */
 const begun = (async () => {
   const [code, pack, answers] = await Promise.all(["code.bin", "pack.bin", "answers.bin"].map(part));
   const known = JSON.parse(new TextDecoder().decode(answers)) as FolderAnswers;

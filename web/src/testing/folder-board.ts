@@ -45,7 +45,7 @@ export class FolderBoard {
     await act(() => vi.waitFor(() => expect(isListed()).toBe(true)));
   }
 
-  /** Let it send what is new. */
+  /** Let it send its news. */
   async turn(): Promise<void> {
     this.now += 1000;
     await act(async () => this.server.turn(this.now));

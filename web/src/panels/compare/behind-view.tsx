@@ -128,7 +128,7 @@ function Sources({ bench }: { bench: Bench }) {
   );
 }
 
-/** What the server has kept, to be played or carried out again. */
+/** Recordings and runs that the server has kept, to be played or carried out again. */
 const keptItems = ({ recordings, runs }: Candidates) => [
   {
     group: "Recordings, played on a bench of their own",
