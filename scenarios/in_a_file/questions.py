@@ -7,6 +7,7 @@ with the teacher; so do steps that watch the bench, and hidden faults, whose tru
 from __future__ import annotations
 
 import hashlib
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,7 +76,14 @@ def inserted(text: str, facts: dict[str, float]) -> str:
         except InputError:
             return "..."
 
-    return INSERTED.sub(number, text)
+    return _plain(INSERTED.sub(number, text))
+
+
+def _plain(text: str) -> str:
+    """Return the words of Markdown: no displayed equation, no marks of emphasis, a line for each paragraph."""
+    words = re.sub(r"\$([^$\\]+)\$", r"\1", re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL))
+    paragraphs = re.split(r"\n\s*\n", re.sub(r"\*+([^*\n]+)\*+", r"\1", words))
+    return "\n\n".join(" ".join(one.split("\n")).strip() for one in paragraphs if one.strip())
 
 
 def _number(asked: NumberQuestion, facts: dict[str, float]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from core.board import supervision
-from core.board.commands import MakeSafe, SetValues, Switch, parse_command
+from core.board.commands import Command, SetValues, parse_command
 from core.board.document import SUPERVISOR
 from core.board.live import value_at
 from core.board.spec import Spec
@@ -30,7 +30,7 @@ def _asks(_: str) -> NoReturn:
     raise _AskedError
 
 
-def acts_of(spec: Spec) -> list[list[Switch | SetValues | MakeSafe]]:
+def acts_of(spec: Spec) -> list[list[Command]]:
     """Return the acts of each request of the supervisor of a bench, from request 1 on; none without a supervisor.
 
     Raises
@@ -109,5 +109,5 @@ def supervisor_switches(table: dict[str, Any] | None) -> list[str]:
     return [act["switch"] for act in acts if "switch" in act]
 
 
-def _described(command: Switch | SetValues | MakeSafe) -> dict[str, Any]:
+def _described(command: Command) -> dict[str, Any]:
     return command.at(None).document()

@@ -76,3 +76,8 @@ def test_a_file_has_no_question_with_few_choices_and_no_hidden_fault(name: str):
 
 def test_a_number_that_needs_a_measurement_is_three_dots():
     assert inserted("{{ a | Hz }} and {{ later_b }}", {"a": 1500.0}) == "1.5\u00a0kHz and ..."
+
+
+def test_the_words_of_a_sheet_are_without_the_marks_of_markdown():
+    text = "**Goal.** You find\n*linear* $Q$.\n\n$$x=\\frac{a}\n{b}$$\n\nThen $\\omega$."
+    assert inserted(text, {}) == "Goal. You find linear Q.\n\nThen $\\omega$."
