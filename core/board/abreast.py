@@ -174,13 +174,16 @@ class Abreast:
         leader = self._leaders.get(id(course))
         wiring = _apart(pattern.board.wiring) if leader is None else leader.wiring
         wiring = wiring.beside(order, p, s, w)
-        others = {place: unlike(spec.context(*place), before.spec.context(*place)) for place in pattern.places}
+        others = {
+            place: unlike(spec.context(*place), before.spec.context(*place), pattern.facts) for place in pattern.places
+        }
         pattern.varied.update(*others.values())
         for row, read in self._read.items():
             instance, known = order[row], before.wiring.instances[row]
             is_other = is_new and not is_alike(instance.params, known.params)
             if is_other or not others[instance.every, instance.axis].isdisjoint(read):
                 self._read[row] = self._pack(wiring, row, spec)
+                pattern.follow(self._read[row])
         if spec.seed != before.spec.seed:
             for at, stream in pattern.streams:
                 p[at] = key(spec.seed, stream)
@@ -264,7 +267,8 @@ class Abreast:
         """
         are_same = True
         for row in step.rows:
-            apart = [] if row.read.isdisjoint(self._pattern.varied) else [one for one in lanes if not one.shares(row)]
+            is_shared = row.read <= self._pattern.facts and row.read.isdisjoint(self._pattern.varied)
+            apart = [] if is_shared else [one for one in lanes if not one.shares(row)]
             start = int(self._pattern.board.wiring.table[row.number, P_OFFSET])
             if len(lanes) == len(self.boards):
                 self._p[start : start + len(row.numbers)] = row.numbers[:, None]
