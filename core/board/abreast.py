@@ -243,7 +243,8 @@ class Abreast:
         """
         are_same = True
         for row in step.rows:
-            apart = [] if row.read.isdisjoint(self._pattern.varied) else [one for one in lanes if not one.shares(row)]
+            is_shared = row.read <= self._pattern.facts and row.read.isdisjoint(self._pattern.varied)
+            apart = [] if is_shared else [one for one in lanes if not one.shares(row)]
             start = int(self._pattern.board.wiring.table[row.number, P_OFFSET])
             if len(lanes) == len(self.boards):
                 self._p[start : start + len(row.numbers)] = row.numbers[:, None]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import fields
-from operator import attrgetter
 from typing import Any
 
 from core.block import BlockParams, Context, FloatArray, Oscillator
@@ -12,7 +12,6 @@ from core.board.spec import Spec
 
 FACTS = [fact.name for fact in fields(Context)]
 """The facts that blocks may know of a bench."""
-ALL_FACTS = attrgetter(*FACTS)
 
 
 class _Fact:
@@ -56,10 +55,10 @@ def streams(instance: Instance, start: int) -> list[tuple[int, str]]:
     return [(start + place, stream.replace("{axis}", instance.axis)) for place, stream in own]
 
 
-def unlike(one: Context, other: Context) -> set[str]:
-    """Return the facts in which two benches differ."""
-    facts = zip(FACTS, ALL_FACTS(one), ALL_FACTS(other), strict=True)
-    return {fact for fact, own, another in facts if own is not another and not is_alike(own, another)}
+def unlike(one: Context, other: Context, facts: Iterable[str] = FACTS) -> set[str]:
+    """Return which facts of some differ between two benches."""
+    pairs = ((fact, getattr(one, fact), getattr(other, fact)) for fact in facts)
+    return {fact for fact, own, another in pairs if own is not another and not is_alike(own, another)}
 
 
 def is_alike(one: Any, other: Any) -> bool:

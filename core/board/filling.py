@@ -42,13 +42,16 @@ def fill(
     Uneven
         When a block reads more or fewer numbers than before.
     """
-    others = {place: unlike(spec.context(*place), before_spec.context(*place)) for place in pattern.places}
+    others = {
+        place: unlike(spec.context(*place), before_spec.context(*place), pattern.facts) for place in pattern.places
+    }
     pattern.varied.update(*others.values())
     for row, facts in read.items():
         instance = wiring.instances[row]
         is_other = not is_alike(instance.params, before[row].params)
         if is_other or not others[instance.every, instance.axis].isdisjoint(facts):
             read[row] = _pack(wiring, row, spec)
+            pattern.follow(read[row])
     if spec.seed != before_spec.seed:
         for at, stream in pattern.streams:
             wiring.p[at] = key(spec.seed, stream)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
+from typing import cast
 
 from core.block import Block, Oscillator
 from core.board.document import CHOSEN, ONE_DISPLACEMENT, PARKED, Document, generators
@@ -19,8 +21,7 @@ MOST_GROWTH = 100.0
 """Largest exponent of growth within a sample: the cube of the growth is still a number."""
 
 
-@lru_cache(maxsize=4096)
-def misfit(block: type[Block], plant: type[Block]) -> str:
+def _misfit(block: type[Block], plant: type[Block]) -> str:
     """Say why a block does not go with a plant; nothing when it does."""
     axes = plant.axes or ()
     if block.plants and plant.name not in block.plants:
@@ -38,6 +39,10 @@ def misfit(block: type[Block], plant: type[Block]) -> str:
         return f"is for a plant with axes; {moves}"
     missing = [axis for axis in block.axes or () if axis not in axes]
     return f"needs {', '.join(missing)}; {moves}" if missing else f"is for one displacement; {moves}"
+
+
+misfit = cast(Callable[[type[Block], type[Block]], str], lru_cache(maxsize=4096)(_misfit))
+"""Blocks of a bench are compared with its plant again and again."""
 
 
 def refuse_what_does_not_fit(doc: Document, plant: type[Block]) -> None:

@@ -9,7 +9,7 @@ from core.board import steps
 from core.board.board import Board
 from core.board.commands import SetValues
 from core.board.course import Courses
-from core.board.facts import numbers, streams
+from core.board.facts import FACTS, numbers, streams
 from core.board.idle import leave_out_idle
 from core.board.instances import Instance
 from core.board.program import P_OFFSET
@@ -61,11 +61,19 @@ class Pattern:
         """The noise streams of the rows that are packed, each with the place of its key."""
         self.places = {(one.every, one.axis) for row, one in enumerate(wiring.instances) if row in self.used}
         """The intervals and axes of the rows that may run."""
+        self.facts = set[str]().union(*self.read.values())
+        """The facts that the numbers of these rows are made of."""
         self.varied: set[str] = set()
-        """The facts in which benches have differed so far."""
+        """Those of these facts in which benches have differed so far."""
         self._addresses: dict[int, int] = {}
         self.courses = Courses()
         """The changes that the commands of boards make, worked out once."""
+
+    def follow(self, read: set[str]) -> None:
+        """Compare all facts of benches from now on if numbers are made of others than before."""
+        if not read <= self.facts:
+            self.varied |= {*FACTS} - self.facts  # nobody has compared these
+            self.facts = {*FACTS}
 
     def address(self, row: int) -> int:
         """Return the address of the step of a row, for all boards."""

@@ -3,6 +3,7 @@ r"""A device: the bench simulates it, and the controllers take it for true."""
 from __future__ import annotations
 
 import math
+from functools import lru_cache, partial
 from typing import Any, Self
 
 from pydantic import ValidationError, model_validator
@@ -57,6 +58,19 @@ OF_RESONATOR = (
 
 LCR_350 = Geometry()
 """The drawing of a device that has none."""
+
+
+def _as_etched(drawn: Geometry, thickness_um: float | None, finger_gap_um: float | None) -> Geometry:
+    """Return a drawing with the thickness and the gap of a device, as far as they are stated."""
+    stated: dict[str, float] = {}
+    if thickness_um is not None:
+        stated["thickness_um"] = thickness_um
+    if finger_gap_um is not None:
+        stated["finger_gap_um"] = finger_gap_um - 2.0 * drawn.comb_bias_um
+    return drawn.model_copy(update=stated) if stated else drawn
+
+
+_usual_drawing = lru_cache(maxsize=256)(partial(_as_etched, LCR_350))
 
 
 class Device(BlockParams):
@@ -197,13 +211,9 @@ class Device(BlockParams):
 
         Fingers given in addition to the drawing change the force alone: mass and damping belong to the drawn comb.
         """
-        drawn = self.geometry or LCR_350
-        stated: dict[str, float] = {}
-        if self.thickness_um is not None:
-            stated["thickness_um"] = self.thickness_um
-        if self.finger_gap_um is not None:
-            stated["finger_gap_um"] = self.finger_gap_um - 2.0 * drawn.comb_bias_um
-        return drawn.model_copy(update=stated) if stated else drawn
+        if self.geometry is None:
+            return _usual_drawing(self.thickness_um, self.finger_gap_um)
+        return _as_etched(self.geometry, self.thickness_um, self.finger_gap_um)
 
     @property
     def stators_v(self) -> tuple[float, float]:

@@ -150,8 +150,9 @@ class Score(Block):
         n = int(p.count)
         truth = -1
         for i in range(n):
-            if truth < 0 and holds(p.hypotheses[i], x):
-                truth = i
+            if truth < 0:  # a condition of its own: boards abreast skip the rest once all have a truth
+                if holds(p.hypotheses[i], x):
+                    truth = i
         count(p, s, x, n, truth)
 
 

@@ -147,6 +147,16 @@ def test_what_a_block_reads_is_alike_to_the_sign_of_a_zero():
     assert all(wiring.p[place] == noise.key(spec.seed, stream) for place, stream in pattern.streams)
 
 
+def test_a_block_that_reads_other_facts_than_on_the_first_board():
+    """Thermal noise follows from the temperature, which no other block of the loop reads."""
+    values = [(False, 300.0), (False, 350.0), (True, 350.0), (True, 300.0), (True, 250.0)]
+    documents = [with_values(RICH, {"plant.thermal_noise": n, "environment.temperature_k": t}) for n, t in values]
+    abreast = together(documents, [EVENTS[:1]] * 5, [])
+    assert abreast.run(TICKS) == [True] * 5
+    digests = [alone(document, EVENTS[:1]).digest() for document in documents]
+    assert [board.digest() for board in abreast.boards] == digests and len({*digests}) == 5
+
+
 def test_two_axes_and_their_controllers():
     documents = [with_values(AXES_RICH, {"seed": seed}) for seed in (3, 4, 9)]
     abreast = together(documents, [[]] * 3, [])
