@@ -11,7 +11,6 @@ from core.kernel import kernel
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
-
 USUAL_V = 20.0
 """Limit of the voltage on combs unless it is given."""
 
