@@ -245,7 +245,7 @@ QUANTITIES = (
     ),
     DeviceFigure(
         "gyro.feed_through_dps_af",
-        "The same as a rate",
+        "Rate per parasitic capacitance",
         "deg/s/aF",
         Equation(
             "open loop, x at resonance",

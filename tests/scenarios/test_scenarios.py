@@ -165,6 +165,15 @@ TUNED: dict[str, Any] = {
     "controller": {"kind": "open_loop_rate"},
 }
 """Settings of a bench for blocks of a gyroscope with a tuning electrode."""
+COMB = {"fingers": 200, "thickness_um": 60.0, "gap_um": 3.0}
+COMBS: dict[str, Any] = {
+    "device": {"id": "gyro-a", "electrodes": {"drive": COMB, "sense": COMB}},
+    "plant": {"model": "gyroscope"},
+}
+NEEDS = {"axis_drive.by": COMBS, "axis_drive.limit_v": {**COMBS, "drive": {"by": "volts"}}}
+"""Settings of a bench without which a parameter is refused."""
+ALONE = (AXES["device"], TUNED["device"], COMBS["device"])
+"""Devices of benches that are whole without the tables of a resonator."""
 
 BANK = {"kind": "mmae"}
 
@@ -238,9 +247,10 @@ def unreached(table: str, block: Any, base: dict[str, Any]) -> list[str]:
             base = {"reference": {"kind": block.name, "amplitude_um": 0.5}}
         elif name == "amplitude_v":
             base = {"reference": {"kind": block.name, "amplitude_v": 1.0}}
-        if str(base) not in loaded:
-            loaded[str(base)] = Scenario.load(base if base.get("device") == AXES["device"] else document({**base}))
-        spec = with_values(loaded[str(base)], {f"{table}.{name}": value}).spec
+        whole = {**base, **NEEDS.get(f"{block.name}.{name}", {})}
+        if str(whole) not in loaded:
+            loaded[str(whole)] = Scenario.load(whole if whole.get("device") in ALONE else document({**whole}))
+        spec = with_values(loaded[str(whole)], {f"{table}.{name}": value}).spec
         text = str(value).lower() if isinstance(value, bool) else str(value)
         assigned = parse_assignment(f"{table}.{name}={text}")
         if getattr(section_of(spec, table).params, name) != value or assigned != (f"{table}.{name}", value):

@@ -11255,11 +11255,8 @@ export interface components {
              * @enum {string}
              */
             by?: "force" | "volts";
-            /**
-             * @description limit to either side, by volts, V
-             * @default 20
-             */
-            limit_v?: number;
+            /** @description limit to either side, by volts; 20 V unless given, V */
+            limit_v?: number | null;
             /**
              * @description held by a converter, or analogue, for controllers that know their force between samples
              * @default held
