@@ -32,6 +32,7 @@ from core.own.values import (
     is_number,
     is_scalar,
     public,
+    readable,
     whole,
 )
 from core.plain import plain
@@ -187,7 +188,7 @@ class Evaluator:
             fact = getattr(owner, name)
             if fact is None or isinstance(fact, int | float | str | tuple | Oscillator | BlockParams):
                 return fact
-        return refuse(node, f"has no {name} that a unit may read{nearest(name, _readable(owner))}")
+        return refuse(node, f"has no {name} that a unit may read{nearest(name, readable(owner))}")
 
     def _field(self, node: ast.AST, owner: Record, name: str) -> Field | None:
         """Return a field of a record, or nothing."""
@@ -392,16 +393,3 @@ class Evaluator:
             refuse(node, "is no vector and no list")
         if not isinstance(index, int) or not 0 <= index < len(owner):
             refuse(node, f"has no item {index!r}; there are {len(owner)}, from 0")
-
-
-def _readable(owner: Any) -> list[str]:
-    """Return the names that a unit may read of a value, for an error that lists them."""
-    if isinstance(owner, Mathematics):
-        return [*MATHEMATICS]
-    if isinstance(owner, Own):
-        return ["Packed", "State"]
-    if isinstance(owner, Record):
-        return [field.name for field in owner.layout.fields]
-    if isinstance(owner, BlockParams):
-        return [*type(owner).model_fields]
-    return sorted(public(cast(Any, type(owner)))) if isinstance(owner, Context | Oscillator) else []

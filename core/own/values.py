@@ -8,10 +8,12 @@ import operator
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
-from core.block import Block, Equation, Oscillator, Stage
+from core.block import Block, BlockParams, Context, Equation, Oscillator, Stage
+from core.own.offered import MATHEMATICS
 from core.own.text import refuse
+from core.record import Record
 
 MOST_INTEGER = 2**53
 
@@ -61,6 +63,19 @@ def public(kind: Any) -> frozenset[str]:
     """Return the names of a class of facts that a unit may read: fields and properties, no function."""
     named = {entry.name for entry in fields(kind)} if is_dataclass(kind) else set()
     return frozenset(named | {name for name in dir(kind) if isinstance(getattr(kind, name), property)})
+
+
+def readable(owner: Any) -> list[str]:
+    """Return the names that a unit may read of a value, for an error that lists them."""
+    if isinstance(owner, Mathematics):
+        return [*MATHEMATICS]
+    if isinstance(owner, Own):
+        return ["Packed", "State"]
+    if isinstance(owner, Record):
+        return [field.name for field in owner.layout.fields]
+    if isinstance(owner, BlockParams):
+        return [*type(owner).model_fields]
+    return sorted(public(cast(Any, type(owner)))) if isinstance(owner, Context | Oscillator) else []
 
 
 def is_scalar(value: Any) -> bool:

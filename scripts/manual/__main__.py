@@ -25,7 +25,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as made:
         source, built = Path(made, "source"), Path(made, "built")
         write(source)
-        code = build_main([*STRICT, "-c", str(HERE), "-d", f"{made}/trees", str(source), str(built)])
+        code: int = build_main([*STRICT, "-c", str(HERE), "-d", f"{made}/trees", str(source), str(built)])
         if code == 0:
             shutil.rmtree(site, ignore_errors=True)
             shutil.move(built, site)

@@ -47,10 +47,12 @@ def pages() -> dict[str, str]:
     )
     refused = _schema_names(document["components"]["responses"])
     about += " or ".join(map(_link, refused)) + "."
-    rest = sorted(name for name in _all_from(refused, schemas) if name not in written)
+    rest = sorted(schemas.keys() - written)
     parts = [about, table(("group", "operations", "content"), rows), menu(map(_file, found))]
     parts += (
-        ["## Schemas of refusals", *(part for name in rest for part in _schema(name, schemas[name]))] if rest else []
+        ["## Refusals, and messages of the stream", *(part for name in rest for part in _schema(name, schemas[name]))]
+        if rest
+        else []
     )
     return {"reference/rest/index": page("REST", READERS, parts), **found}
 

@@ -35,7 +35,8 @@ def _public(name: str) -> Iterator[str]:
     value = getattr(combbench, name)
     yield f"## {shown(name)}"
     if inspect.isclass(value):
-        lines = [f".. autoclass:: combbench.{name}", "   :members:", "   :show-inheritance:"]
+        lines = [f".. autoclass:: combbench.{name}", "   :members:"]
+        lines += ["   :show-inheritance:"] if value.__bases__ != (object,) else []
     elif callable(value):
         lines = [f".. autofunction:: combbench.{name}"]
     else:

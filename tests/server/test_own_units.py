@@ -182,6 +182,12 @@ def test_check_says_what_is_wrong_and_what_it_costs(tmp_path: Path, monkeypatch:
     said = CliRunner().invoke(app, ["check", str(bad)], catch_exceptions=False)
     line = 1 + bad.read_text("utf-8").split("\n").index("        e = x.model - x.truth")
     assert said.exit_code == 2 and f"line {line}, column 23: has no truth" in said.stdout
+    bad.write_text(bad.read_text("utf-8").replace("x.engaged == 0.0", "x.engagd == 0.0"), "utf-8")
+    said = CliRunner().invoke(app, ["check", str(bad)], catch_exceptions=False)
+    assert [text.partition(": ")[2].split(";")[0] for text in said.stdout.splitlines()] == [
+        f"line {line}, column 23: has no truth",
+        f"line {line + 2}, column 12: has no engagd",
+    ]
     assert CliRunner().invoke(app, ["run", "first-look", "--unit", str(bad)]).exit_code == 2
     missing = CliRunner().invoke(app, ["run", "first-look", "--unit", str(tmp_path / "none.py")])
     assert missing.exit_code == 2 and "--unit" in missing.stderr
