@@ -13,7 +13,7 @@ from core.board.wiring import Wiring
 def fill(
     wiring: Wiring, spec: Spec, before: Wiring, before_spec: Spec, read: dict[int, set[str]], packed: set[int]
 ) -> None:
-    """Write the parameters and the first states of a bench that differ from those of another bench.
+    """Write the parameters and the first states of a bench where they differ from another bench.
 
     Parameters
     ----------

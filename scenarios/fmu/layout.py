@@ -54,7 +54,7 @@ class Layout:
     outputs : list of Signal
         The signals that others may read.
     left_out : list of str
-        What the FMU has not, each with the reason.
+        The parts of the bench that the FMU lacks, each with the reason.
     """
 
     board: Board

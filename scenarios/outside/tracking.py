@@ -1,4 +1,4 @@
-"""The task of following a reference model, for one board or for many: what the environments of Gymnasium share."""
+"""The task of following a reference model, for one board or for many; the environments of Gymnasium share it."""
 
 from __future__ import annotations
 
@@ -251,7 +251,7 @@ def _guard(scenario: Scenario) -> Guard.Params:
 
 
 def _scale_um(scenario: Scenario) -> float:
-    """Return how far the limit of the drive moves the device at rest; the travel of the guard where that is less."""
+    """Return the travel of the device at rest under the limit of the drive, or of the guard where this is less."""
     device, travel = scenario.spec.nominal, float(_guard(scenario).travel_um)
     force = abs(device.force) * scenario.spec.context().limit_v
     return min(travel, force / device.stiffness) if device.stiffness > 0.0 else travel
