@@ -207,8 +207,15 @@ class TrackingTask:
 
     def told_of(self, place: int) -> dict[str, Any]:
         """Return the same of one episode, as plain values."""
-        found = self.told(np.array([place]))
-        return {name: value[0] if value.ndim > 1 else value.item() for name, value in found.items()}
+        tick, trip = int(self._boards.ticks[place]), ""
+        if self._boards.gone[place]:
+            known = self._boards.boards[place].trip
+            trip = known.reason if known else ""
+        found: dict[str, Any] = {"tick": tick, "time_ms": tick * self._dt_ms, "trip": trip}
+        if self._constraints.names:
+            values = self._values[place].copy()
+            found |= {"constraint_values": values, "constraint_violation": bool((values > 0.0).any())}
+        return found
 
     def drawn(self, place: int) -> dict[str, Any]:
         """Return what chance and options have chosen for an episode."""
