@@ -53,7 +53,7 @@ class TaskOptions(NamedTuple):
     render_mode: str | None = None
 
 
-class Outcome(NamedTuple):
+class StepOutcome(NamedTuple):
     """The end of a step of some boards."""
 
     seen: Observation
@@ -160,7 +160,7 @@ class TrackingTask:
             self._pictures[place].clear()
         return self._seen[place].copy()
 
-    def step(self, places: IntArray, actions: NDArray[Any]) -> Outcome:
+    def step(self, places: IntArray, actions: NDArray[Any]) -> StepOutcome:
         """Hold a voltage at each of some boards for a step."""
         voltages = self.limit_v * np.asarray(actions, dtype=np.float64).reshape(len(places))
         self._boards.advance(places, voltages)
@@ -184,7 +184,7 @@ class TrackingTask:
         if self._pictures:
             for i, place in enumerate(places):
                 self._pictures[place].add(rows[: counts[i], self._judged, i])
-        return Outcome(
+        return StepOutcome(
             seen, rewards, terminated, ~terminated & ((self._boards.ticks[places] >= self._samples) | is_long)
         )
 
