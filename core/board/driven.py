@@ -178,6 +178,11 @@ class DrivenBoards:
         groups, columns = self._place_of
         self._all.s[groups[places], self._asked, columns[places]] = voltages
         self.counts[places] = 0
+        if len(places) == 1:
+            place = int(places[0])
+            while not (self.gone[place] or (self.counts[place] == self._frame and self._has_begun[place])):
+                self._alone(place)
+            return
         for numbers in self._whole(places):
             size = self._sizes_of_groups[numbers[0]]
             members = self._members[numbers, :size]

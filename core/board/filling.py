@@ -22,7 +22,7 @@ def fill(
     pattern: Pattern,
     read: dict[int, set[str]],
 ) -> None:
-    """Write the parameters and first states of a bench where they differ from those of another bench.
+    """Write the parameters and the first states of a bench where they differ from another bench.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from core.format import format_short
 from core.units import MS_PER_S
-from scenarios.fmu.layout import Layout
+from scenarios.fmu.layout import FmuLayout
 from scenarios.fmu.source import ends, first_severity
 from scenarios.fmu.unit_text import base_unit
 from scenarios.schema import Scenario
@@ -18,7 +18,7 @@ TICKS = 1000
 """Samples of the experiment that an importer suggests."""
 
 
-def description(scenario: Scenario, one: Layout, token: str, version: str) -> bytes:
+def description(scenario: Scenario, one: FmuLayout, token: str, version: str) -> bytes:
     """Return ``modelDescription.xml``."""
     root = ElementTree.Element(
         "fmiModelDescription",
@@ -45,23 +45,23 @@ def description(scenario: Scenario, one: Layout, token: str, version: str) -> by
         unit = ElementTree.SubElement(units, "Unit", name=text)
         if (known := base_unit(text)) is not None:
             factor, exponents = known
-            ElementTree.SubElement(
-                unit, "BaseUnit", **{key: str(value) for key, value in exponents.items()}, factor=repr(factor)
-            )
+            shown = {**{key: str(value) for key, value in exponents.items()}, "factor": repr(factor)}
+            ElementTree.SubElement(unit, "BaseUnit", shown)
     ElementTree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(TICKS * dt_s), stepSize=repr(dt_s))
     listed = ElementTree.SubElement(root, "ModelVariables")
     for number, entry in enumerate(variables):
-        ElementTree.SubElement(listed, "Float64", valueReference=str(number), **entry)
+        ElementTree.SubElement(listed, "Float64", {"valueReference": str(number), **entry})
     structure = ElementTree.SubElement(root, "ModelStructure")
     outputs = [str(number) for number, entry in enumerate(variables) if entry["causality"] == "output"]
     for kind in ("Output", "InitialUnknown"):
         for number in outputs:
             ElementTree.SubElement(structure, kind, valueReference=number)
     ElementTree.indent(root)
-    return ElementTree.tostring(root, "utf-8", xml_declaration=True)
+    found: bytes = ElementTree.tostring(root, "utf-8", xml_declaration=True)
+    return found
 
 
-def _variables(one: Layout) -> list[dict[str, str]]:
+def _variables(one: FmuLayout) -> list[dict[str, str]]:
     """Return the variables in the order of their references."""
     found = [_variable("time", "s", "time of the simulation", "independent", "continuous")]
     for command in one.commands:

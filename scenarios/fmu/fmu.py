@@ -25,7 +25,7 @@ STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 class WrittenFmu(NamedTuple):
-    """Step of an FMU in s, its platform, and what it has not, each with the reason."""
+    """Step of an FMU in s, its platform, and the parts of the bench that it lacks, each with the reason."""
 
     step_s: float
     platform: str

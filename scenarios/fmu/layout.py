@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from core.block import IntArray
 from core.board.board import Board
 from core.board.program import EVERY, IO_OFFSET, P_OFFSET, S_OFFSET
@@ -32,7 +30,7 @@ class CommandInput(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Layout:
+class FmuLayout:
     """The arrays and the tables of the part.
 
     Attributes
@@ -54,7 +52,7 @@ class Layout:
     outputs : list of Signal
         The signals that others may read.
     left_out : list of str
-        What the FMU has not, each with the reason.
+        The parts of the bench that the FMU lacks, each with the reason.
     """
 
     board: Board
@@ -81,7 +79,7 @@ def refusal(scenario: Scenario) -> str:
     return next((text for text, holds in reasons.items() if holds), "")
 
 
-def layout(scenario: Scenario) -> Layout:
+def layout(scenario: Scenario) -> FmuLayout:
     """Return the part of a bench that goes into an FMU.
 
     Raises
@@ -106,7 +104,7 @@ def layout(scenario: Scenario) -> Layout:
     events = sum(one.tick is None or one.tick > 0 for one in board.pending)
     left_out = [*writes.left_out, *([f"{events} events of the scenario: set inputs instead"] if events else [])]
     first = min(row for row in rows if wiring.instances[row].key.split(".")[0] == "drive")
-    return Layout(
+    return FmuLayout(
         board=board,
         rows=rows,
         cut=sum(row < first for row in rows),
@@ -181,6 +179,7 @@ def _is_aside(board: Board, row: int) -> bool:
     return family in LEFT_OUT or instance.key.endswith(".score") or ".weighted" in instance.key
 
 
-def table(one: Layout) -> np.ndarray:
+def table(one: FmuLayout) -> IntArray:
     """Return the offsets and the interval of each row."""
-    return one.board.wiring.table[one.rows][:, [P_OFFSET, S_OFFSET, IO_OFFSET, EVERY]]
+    found: IntArray = one.board.wiring.table[one.rows][:, [P_OFFSET, S_OFFSET, IO_OFFSET, EVERY]]
+    return found

@@ -13,10 +13,10 @@ from core.block import Block
 from core.loop.guard import REASONS
 from core.ports import TICK, TIME_MS
 from core.units import MS_PER_S
-from scenarios.fmu.layout import Layout, table
+from scenarios.fmu.layout import FmuLayout, table
 
 
-def first_severity(one: Layout, name: str) -> float:
+def first_severity(one: FmuLayout, name: str) -> float:
     """Return the severity of a fault at the first tick."""
     params: Any = one.board.spec.faults.get(name)
     return 0.0 if params is None else float(params.severity)
@@ -28,7 +28,7 @@ def ends(entry: dict[str, Any]) -> tuple[float, float]:
     return tuple(float(other if given is None else given) for given, other in (low, high))  # type: ignore[return-value]
 
 
-def source(one: Layout, blocks: Sequence[type[Block]], token: str) -> str:
+def source(one: FmuLayout, blocks: Sequence[type[Block]], token: str) -> str:
     """Return the C of a part of a bench; ``blocks`` are numbered as their steps are."""
     board, wiring = one.board, one.board.wiring
     lines: list[str] = []
@@ -118,7 +118,7 @@ def _codes() -> int:
     return max(REASONS) + 1
 
 
-def _is_guard(one: Layout, row: int) -> bool:
+def _is_guard(one: FmuLayout, row: int) -> bool:
     return one.board.wiring.instances[row].key.split(".")[0] == "guard"
 
 

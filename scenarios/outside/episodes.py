@@ -42,8 +42,8 @@ class Episodes:
     draws : mapping
         Fields of the bench by dotted paths, each with the ends of the range from which chance draws it evenly.
     faults : mapping
-        Faults, each with the ends of the range of its severity. An episode has none or one of them, all equally likely;
-        it comes at a sample of which each is equally likely.
+        Faults, each with the ends of the range of its severity. An episode has one of these faults or none, all equally
+        likely, from a sample of the episode on, all samples equally likely.
 
     Raises
     ------

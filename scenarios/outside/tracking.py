@@ -1,4 +1,4 @@
-"""The task of following a reference model, for one board or for many: what the environments of Gymnasium share."""
+"""The task of following a reference model, for one board or for many; the environments of Gymnasium share it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class TaskOptions(NamedTuple):
     render_mode: str | None = None
 
 
-class Outcome(NamedTuple):
+class StepOutcome(NamedTuple):
     """The end of a step of some boards."""
 
     seen: Observation
@@ -160,7 +160,7 @@ class TrackingTask:
             self._pictures[place].clear()
         return self._seen[place].copy()
 
-    def step(self, places: IntArray, actions: NDArray[Any]) -> Outcome:
+    def step(self, places: IntArray, actions: NDArray[Any]) -> StepOutcome:
         """Hold a voltage at each of some boards for a step."""
         voltages = self.limit_v * np.asarray(actions, dtype=np.float64).reshape(len(places))
         self._boards.advance(places, voltages)
@@ -184,7 +184,7 @@ class TrackingTask:
         if self._pictures:
             for i, place in enumerate(places):
                 self._pictures[place].add(rows[: counts[i], self._judged, i])
-        return Outcome(
+        return StepOutcome(
             seen, rewards, terminated, ~terminated & ((self._boards.ticks[places] >= self._samples) | is_long)
         )
 
@@ -207,8 +207,15 @@ class TrackingTask:
 
     def told_of(self, place: int) -> dict[str, Any]:
         """Return the same of one episode, as plain values."""
-        found = self.told(np.array([place]))
-        return {name: value[0] if value.ndim > 1 else value.item() for name, value in found.items()}
+        tick, trip = int(self._boards.ticks[place]), ""
+        if self._boards.gone[place]:
+            known = self._boards.boards[place].trip
+            trip = known.reason if known else ""
+        found: dict[str, Any] = {"tick": tick, "time_ms": tick * self._dt_ms, "trip": trip}
+        if self._constraints.names:
+            values = self._values[place].copy()
+            found |= {"constraint_values": values, "constraint_violation": bool((values > 0.0).any())}
+        return found
 
     def drawn(self, place: int) -> dict[str, Any]:
         """Return what chance and options have chosen for an episode."""
@@ -251,7 +258,7 @@ def _guard(scenario: Scenario) -> Guard.Params:
 
 
 def _scale_um(scenario: Scenario) -> float:
-    """Return how far the limit of the drive moves the device at rest; the travel of the guard where that is less."""
+    """Return the travel of the device at rest under the limit of the drive, or of the guard where this is less."""
     device, travel = scenario.spec.nominal, float(_guard(scenario).travel_um)
     force = abs(device.force) * scenario.spec.context().limit_v
     return min(travel, force / device.stiffness) if device.stiffness > 0.0 else travel

@@ -72,7 +72,7 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
     def reset(  # type: ignore[override]
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode in each environment, or in those of the mask.
+        """Begin an episode in each environment, or in the environments of the mask.
 
         Raises
         ------

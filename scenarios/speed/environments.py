@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import gymnasium
 import numpy as np
 
-from scenarios.outside.environment import ID
 from scenarios.speed.timing import cpu_ns
 
-COUNT, STEPS, SKIP = 64, 100, 10
-VALUES: dict[str, Any] = {"diagnosers": {}}
+COUNT, STEPS, SKIP = 256, 30, 10
+ID, VALUES = "scenarios.outside.environment:CombBench/Tracking-v1", {"diagnosers": {}}
 
 
 def one_cost(steps: int = 1000) -> Callable[[], float]:
@@ -26,6 +24,8 @@ def pendulum_cost(steps: int = 2000) -> Callable[[], float]:
 
 
 def _single(name: str, steps: int, **options: Any) -> Callable[[], float]:
+    import gymnasium
+
     env = gymnasium.make(name, **options)
     env.reset(seed=1)
     actions = np.random.default_rng(1).uniform(-0.1, 0.1, (steps, 1)).astype(np.float32)
@@ -41,6 +41,8 @@ def _single(name: str, steps: int, **options: Any) -> Callable[[], float]:
 
 def abreast_cost(frame_skip: int, count: int = COUNT, steps: int = STEPS) -> Callable[[], float]:
     """Return the measurement of a step of one of many environments abreast, ns."""
+    import gymnasium
+
     mode = "vector_entry_point"
     envs = gymnasium.make_vec(
         ID,

@@ -13,7 +13,7 @@ from core.device.two_axis import TwoAxis
 from core.errors import InputError
 from scenarios.library import get
 from scenarios.run import build
-from scenarios.speed import boards, campaign, gyroscope, naive, peers
+from scenarios.speed import boards, campaign, environments, gyroscope, naive, peers
 from scenarios.speed.anchor.table import Anchor
 from scenarios.speed.figure import Costs, figure, per_sample, ratio, scaled
 from scenarios.speed.machine import machine
@@ -76,6 +76,10 @@ class Speed:
             ("padasip", "padasip", partial(peers.padasip_sample, *record)),
             ("control", "interconnected_mrac", partial(peers.interconnected_sample, loop)),
             ("control", "forced_response", partial(peers.forced_response_sample, device, sine)),
+            ("gymnasium", "environment", environments.one_cost),
+            ("gymnasium", "pendulum", environments.pendulum_cost),
+            ("gymnasium", "environments", partial(environments.abreast_cost, 1)),
+            ("gymnasium", "environments_frame", partial(environments.abreast_cost, environments.SKIP)),
         ):
             try:
                 found[name] = prepare()
@@ -159,6 +163,8 @@ class Speed:
         ):
             if peer in costs:
                 rows.append(figure(name, ratio(costs, peer, own), "x", least=least))
+        if "environments" in costs:
+            rows += _environments(costs)
         if "unit_walled" in costs:
             rows += [
                 figure("PID as a user unit, per sample", scaled(costs, "unit", 1.0), "ns"),
@@ -193,6 +199,19 @@ class Speed:
                 least=2.0,
             ),
         ]
+
+
+def _environments(costs: Costs) -> Figures:
+    """Return the rows of the environments of Gymnasium."""
+    name = f"step of {environments.COUNT} environments abreast, each"
+    frame = f"the same, each of {environments.SKIP} samples"
+    return [
+        figure(name, scaled(costs, "environments", 1e-3), "us"),
+        figure(f"{name}, over one environment", ratio(costs, "environment", "environments"), "x", least=20.0),
+        figure(f"{name}, over Gymnasium's pendulum", ratio(costs, "pendulum", "environments"), "x"),
+        figure(frame, scaled(costs, "environments_frame", 1e-3), "us"),
+        figure(f"{frame}, over Gymnasium's pendulum", ratio(costs, "pendulum", "environments_frame"), "x"),
+    ]
 
 
 def campaigns() -> Figures:
