@@ -10,7 +10,7 @@ from core.board.board import Board
 from core.board.program import EVERY, IO_OFFSET, P_OFFSET, S_OFFSET
 from core.errors import InputError
 from core.signals import Signal
-from scenarios.in_a_file.writes import Writes
+from scenarios.in_a_file.writes import MAIN, Writes
 from scenarios.run import build
 from scenarios.schema import Scenario
 
@@ -94,11 +94,13 @@ def layout(scenario: Scenario) -> FmuLayout:
     commands, io = _commands(board)
     rows = _rows(board, io)
     writes = Writes(board, scenario)
-    faults = writes.faults()
+    faults = writes.faults()[MAIN]
     spans = [range(start := int(wiring.table[row, P_OFFSET]), start + len(wiring.packed(row))) for row in rows]
     own = {place for span in spans for place in span}
     values = {
-        path: value for path, value in writes.values().items() if own.issuperset(value["dependence"]["places"].tolist())
+        path: value
+        for path, value in writes.values()[MAIN].items()
+        if own.issuperset(value["dependence"]["places"].tolist())
     }
     keys = {wiring.instances[row].key for row in rows}
     events = sum(one.tick is None or one.tick > 0 for one in board.pending)
