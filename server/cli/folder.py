@@ -97,7 +97,7 @@ def _controllers(file: BenchFile) -> list[str]:
 
 
 def _catalogue(file: BenchFile, board: Any) -> list[dict[str, Any]]:
-    """Return the cards of the blocks of a bench, with what a command of the file sets and nothing else to set."""
+    """Return the cards of the blocks of a bench; only the values that a command of the file sets can be set."""
     live: dict[type, set[str]] = {}
     for path in file.document["values"]:
         head, _, name = path.rpartition(".")

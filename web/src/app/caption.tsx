@@ -7,7 +7,7 @@ import styles from "./strip.module.css";
 import { moreText, useCaption } from "./use-caption";
 
 const EVENTS = "Events are described here as they happen.";
-/** What a page has not whose bench comes from a folder. */
+/** Says which parts are absent where the bench comes from a folder. */
 const UNSERVED =
   "This page computes the bench itself. The narrator, Why, other devices and scenarios, 3D, recordings, classes and campaigns need the server.";
 const LANES = "Each lane of Diagnosis is one guess at the device. A full lane means it is certain.";

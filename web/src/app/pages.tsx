@@ -94,5 +94,5 @@ export const PAGES: Record<PageName, PageKind> = {
 /** Whether a page is offered to a role. */
 export const isOffered = (page: PageName, role: Role | undefined): boolean => {
   const { needs } = PAGES[page];
-  return !needs || (role ? may(needs, role) : needs === "server"); // a person who is not known yet has a server
+  return !needs || (role ? may(needs, role) : needs === "server"); // an unknown person has a server
 };

@@ -136,7 +136,7 @@ export type Benchlike = Pick<Bench, "axes"> | undefined;
 export const suits = ({ only }: Pick<View, "only">, bench: Benchlike): boolean =>
   only === undefined || bench === undefined || (only === "axes") === hasAxes(bench);
 
-/** Whether a view has what it needs on this page. */
+/** Whether a view works on this page. */
 export const isHere = (view: ViewName): boolean => VIEW[view].needs === undefined || isServed();
 
 /** Whether a view works while the answer to a question is hidden. */

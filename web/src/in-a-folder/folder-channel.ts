@@ -150,7 +150,7 @@ export class FolderChannel {
 /** A refusal in the shape of the server. */
 export const refusalOf = ({ message }: Error) => ({ code: "refused", message, field: "", hint: "" });
 
-/** What a panel shows now: pictures differ if their keys do. */
+/** The picture of a panel now: pictures differ if their keys do. */
 function pictureOf(file: FileBench, { subscription, signals, behind }: Panel, find: Find) {
   const isFrozen = subscription.mode === "frozen";
   const { start, end, columns } = isFrozen

@@ -49,7 +49,7 @@ export class LiveBench {
     this.lead();
   }
 
-  /** Show what a bench of the same document was at a tick of its past. */
+  /** Show a bench of the same document at a tick of its past. */
   stand(of: LiveBench, tick: number, window: number, isBefore = false): void {
     const { file } = this;
     file.heard = undefined;
