@@ -216,7 +216,7 @@ class DrivenBoards:
         found: dict[Any, list[int]] = defaultdict(list)
         keys = zip(ticks[numbers, 0], ways[numbers, 0], self._sizes_of_groups[numbers], numbers, strict=True)
         for *key, number in keys:
-            found[tuple(key)].append(number)
+            found[tuple(key)].append(int(number))
         return [np.array(one) for one in found.values()]
 
     def _advance(self, part: list[int]) -> None:
