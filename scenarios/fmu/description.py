@@ -54,8 +54,8 @@ def description(scenario: Scenario, one: FmuLayout, token: str, version: str) ->
     structure = ElementTree.SubElement(root, "ModelStructure")
     outputs = [str(number) for number, entry in enumerate(variables) if entry["causality"] == "output"]
     for kind in ("Output", "InitialUnknown"):
-        for number in outputs:
-            ElementTree.SubElement(structure, kind, valueReference=number)
+        for reference in outputs:
+            ElementTree.SubElement(structure, kind, valueReference=reference)
     ElementTree.indent(root)
     found: bytes = ElementTree.tostring(root, "utf-8", xml_declaration=True)
     return found

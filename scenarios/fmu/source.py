@@ -94,8 +94,8 @@ def source(one: FmuLayout, blocks: Sequence[type[Block]], token: str) -> str:
     values = []
     for k, (path, entry) in enumerate(one.values.items()):
         follows = dependence(f"value_{k}", entry["dependence"])
-        low, high, first = (_number(entry[end], "double") for end in ("low", "high", "value"))
-        values.append(f'{{"{path}", {low}, {high}, {first}, {follows}}}')
+        limits = ", ".join(_number(entry[end], "double") for end in ("low", "high", "value"))
+        values.append(f'{{"{path}", {limits}, {follows}}}')
     lines.append(f"static const Value values[] = {{{', '.join(values) or '{0}'}}};")
     for k, command in enumerate(one.commands):
         array(f"command_{k}", command.places, "int64_t")
@@ -127,5 +127,5 @@ def _number(value: Any, kind: str) -> str:
         return str(int(value))
     value = float(value)
     if math.isfinite(value):
-        return value.hex()
+        return str(value.hex())
     return "NAN" if math.isnan(value) else f"{'-' if value < 0 else ''}INFINITY"

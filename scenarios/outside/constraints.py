@@ -67,5 +67,5 @@ class Constraints:
     @staticmethod
     def violated(values: FloatArray) -> BoolArray:
         """Say for each board whether it violates a constraint."""
-        found: BoolArray = (values > 0.0).any(axis=1)
+        found: BoolArray = np.asarray((values > 0.0).any(axis=1))
         return found

@@ -6,8 +6,8 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
-from core.block import FloatArray
 from core.board.lane import Lane
 from scenarios.outside.scope_picture import Picture
 from scenarios.outside.tracking import RENDER_MODES, Observation, TaskOptions, TrackingTask
@@ -18,7 +18,7 @@ FIRST = np.zeros(1, dtype=np.int64)
 """The place of the only board."""
 
 
-class Tracking(gymnasium.Env[Observation, FloatArray]):
+class Tracking(gymnasium.Env[Observation, NDArray[Any]]):
     """Follow the reference model of a scenario: ``CombBench/Tracking-v1``.
 
     The seed of a reset decides the noise, and the values and faults that chance draws, of this episode and of all later
@@ -63,12 +63,12 @@ class Tracking(gymnasium.Env[Observation, FloatArray]):
         seen = self.task.begin(0, self.np_random, options or {})
         return seen, {**self.task.told_of(0), **self.task.drawn(0)}
 
-    def step(self, action: FloatArray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Hold a voltage for the samples of a step."""
         seen, rewards, terminated, truncated = self.task.step(FIRST, np.asarray(action).reshape(1))
         return seen[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self.task.told_of(0)
 
-    def render(self) -> Picture | None:  # type: ignore[override]
+    def render(self) -> Picture | None:
         """Return the last samples as a picture."""
         return self.task.draw(0) if self.render_mode else None
 

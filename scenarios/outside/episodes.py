@@ -107,7 +107,7 @@ def ends_of(ends: object, field: str) -> tuple[float, float]:
 
 
 def _seed(given: object) -> int:
-    is_whole = isinstance(given, int | np.integer) and not isinstance(given, bool)
-    if not is_whole or not 0 <= int(given) <= MOST_SEED:  # type: ignore[call-overload]
+    whole = int(given) if isinstance(given, int | np.integer) and not isinstance(given, bool) else -1
+    if not 0 <= whole <= MOST_SEED:
         raise InputError(f"must be a whole number from 0 to {MOST_SEED}, got {short(given)}", "options.seed")
-    return int(given)  # type: ignore[call-overload]
+    return whole

@@ -155,10 +155,11 @@ class TrackingTask:
             text = "make another bench than the one of the environment"
             raise InputError(text, "options.values", "make an environment with these values") from None
         self.episodes[place], self._steps[place], self._before[place] = episode, 0, row[self._judged[2]]
-        self._seen[place], self._values[place] = self._observed(row[None, :, None])[0], 0.0
+        seen: Observation = self._observed(row[None, :, None])[0]
+        self._seen[place], self._values[place] = seen, 0.0
         if self._pictures:
             self._pictures[place].clear()
-        return self._seen[place].copy()
+        return seen
 
     def step(self, places: IntArray, actions: NDArray[Any]) -> StepOutcome:
         """Hold a voltage at each of some boards for a step."""

@@ -69,7 +69,7 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         self._seen = np.zeros((num_envs, *self.single_observation_space.shape), dtype=np.float32)
         self._has_ended = np.zeros(num_envs, dtype=np.bool_)
 
-    def reset(  # type: ignore[override]
+    def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode in each environment, or in the environments of the mask.
@@ -124,7 +124,7 @@ class TrackingVector(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
                 infos = self._add_info(infos, self._begin(place, None, {}), place)
         return self._seen.copy(), rewards, terminated, truncated, infos
 
-    def render(self) -> tuple[Picture, ...] | None:  # type: ignore[override]
+    def render(self) -> tuple[Picture, ...] | None:
         """Return a picture of each environment."""
         return tuple(map(self.task.draw, range(self.num_envs))) if self.render_mode else None
 

@@ -10,7 +10,8 @@ import numpy as np
 from scenarios.speed.timing import cpu_ns
 
 COUNT, STEPS, SKIP = 256, 30, 10
-ID, VALUES = "scenarios.outside.environment:CombBench/Tracking-v1", {"diagnosers": {}}
+ID = "scenarios.outside.environment:CombBench/Tracking-v1"
+VALUES: dict[str, Any] = {"diagnosers": {}}
 
 
 def one_cost(steps: int = 1000) -> Callable[[], float]:
@@ -49,7 +50,7 @@ def abreast_cost(frame_skip: int, count: int = COUNT, steps: int = STEPS) -> Cal
         num_envs=count,
         vectorization_mode=mode,
         values=VALUES,
-        frame_skip=frame_skip,  # type: ignore[arg-type]
+        frame_skip=frame_skip,
     )
     envs.reset(seed=1)
     actions = np.random.default_rng(1).uniform(-0.1, 0.1, (steps, count, 1)).astype(np.float32)
