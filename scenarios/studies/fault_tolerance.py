@@ -114,8 +114,7 @@ def _law(document: Document, table: Document) -> Document:
 def _error(board: Board, spec: Spec, fault: str, severity: float, params: Any) -> float:
     """Return the rms error of all runs in the second half of the time after the fault; no number after a trip.
 
-    The spec is read once for all cases of a loop: boards of the same spec share their wiring, and most of the time of a
-    case is that of the board, not of its run.
+    Boards of the same spec share their wiring, and a case takes longer to wire a board than to run it.
     """
     errors: list[FloatArray] = []
     begins = params.samples // 4
