@@ -100,7 +100,11 @@ def renew() -> None:
 
 
 def helper(write: Callable[..., ir.Module], *arguments: Any) -> int:
-    """Return the address of a C function beside the steps, by the function that writes its module."""
+    """Return the address of a C function beside the steps, by the function that writes its module.
+
+    The arguments are part of its name on the shelf: whatever the module depends on is one of them, the number of boards
+    too.
+    """
     own = inspect.getsource(sys.modules[write.__module__])
     piece = Piece(
         f"{write.__name__}-{write.__module__}",

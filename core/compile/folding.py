@@ -13,8 +13,6 @@ from core.compile.code import PLACES, POINTER, begun, helper
 from core.compile.machine import WIDTH
 from core.compile.numbers import I64
 
-BITS = ir.VectorType(I64, WIDTH)
-
 
 def _whole(value: int) -> Any:
     return ir.Constant(I64, value)
@@ -23,26 +21,27 @@ def _whole(value: int) -> Any:
 @cache
 def folding(factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int) -> int:
     """Return where the C function is that folds a tick."""
-    return helper(folds_of_tick, factors, shifts, none, reserved)
+    return helper(folds_of_tick, WIDTH, factors, shifts, none, reserved)
 
 
 def folds_of_tick(
-    factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int
+    width: int, factors: tuple[int, int], shifts: tuple[int, int], none: tuple[int, int, int], reserved: int
 ) -> ir.Module:
-    """Write the function that folds a tick.
+    """Write the function that folds a tick of so many boards.
 
     It takes four pointers, as steps do: to all signals, the folds, the places of the outputs that count, and how many
     these are and all outputs. The first output comes after the reserved signals; ``core.board.fold`` has the factors,
     shifts and bits.
     """
     module, builder, (signals, folds, places, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
+    bits_of_boards = ir.VectorType(I64, width)
 
     def at(base: Any, number: Any) -> Any:
-        place = builder.gep(base, [builder.mul(number, _whole(WIDTH))])
-        return builder.bitcast(place, BITS.as_pointer())
+        place = builder.gep(base, [builder.mul(number, _whole(width))])
+        return builder.bitcast(place, bits_of_boards.as_pointer())
 
     def alike(bits: int) -> Any:
-        return ir.Constant(BITS, [bits] * WIDTH)
+        return ir.Constant(bits_of_boards, [bits] * width)
 
     count, outputs = (builder.load(builder.gep(sizes, [_whole(number)])) for number in range(2))
     with counted(builder, count) as number:

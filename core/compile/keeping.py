@@ -19,34 +19,35 @@ EDGE = 8
 HALF = EDGE // 2
 LOW, HIGH = ([first + i + side for i in range(HALF) for side in (0, EDGE)] for first in (0, HALF))
 """Numbers of two vectors in turn: of their lower halves, and of their upper halves."""
-BOARDS, LINE = ir.VectorType(DOUBLE, WIDTH), ir.VectorType(DOUBLE, EDGE)
+LINE = ir.VectorType(DOUBLE, EDGE)
 
 
 @cache
 def keeping() -> int:
     """Return where the C function is that keeps signals of a tick."""
-    return helper(keeps)
+    return helper(keeps, WIDTH)
 
 
 @cache
 def sorting() -> int:
     """Return where the C function is that sorts by board the signals kept in a slice."""
-    return helper(sorts)
+    return helper(sorts, WIDTH)
 
 
-def keeps() -> ir.Module:
-    """Write the function that keeps signals of a tick, or sums of signals.
+def keeps(width: int) -> ir.Module:
+    """Write the function that keeps signals of a tick of so many boards, or sums of signals.
 
     It takes four pointers, as steps do: to all signals, to the room for the kept ones, to the places of the signals,
     and to the number of kept ones, followed by where the places of each begin and end.
     """
     module, builder, (signals, room, places, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
+    boards = ir.VectorType(DOUBLE, width)
 
     def signal(at: Any) -> Any:
-        source = _at(builder, signals, BOARDS, (builder.load(builder.gep(places, [at])), WIDTH))
+        source = _at(builder, signals, boards, (builder.load(builder.gep(places, [at])), width))
         return builder.load(source, align=8)
 
-    total = builder.alloca(BOARDS)
+    total = builder.alloca(boards)
     with counted(builder, builder.load(sizes)) as number:
         start, end = (builder.load(_at(builder, sizes, I64, (number, 1), (more, 1))) for more in (1, 2))
         builder.store(signal(start), total)
@@ -54,29 +55,29 @@ def keeps() -> ir.Module:
         with counted(builder, others) as other:
             added = signal(builder.add(builder.add(start, other), ir.Constant(I64, 1)))
             builder.store(builder.fadd(builder.load(total), added), total)
-        builder.store(builder.load(total), _at(builder, room, BOARDS, (number, WIDTH)), align=8)
+        builder.store(builder.load(total), _at(builder, room, boards, (number, width)), align=8)
     builder.ret_void()
     return module
 
 
-def sorts() -> ir.Module:
-    """Write the function that sorts by board the signals kept in a slice.
+def sorts(width: int) -> ir.Module:
+    """Write the function that sorts by board, of so many boards, the signals kept in a slice.
 
-    It takes four pointers: to the kept signals, shape (``SLICE``, kept, ``WIDTH``); to the first tick of the slice in a
-    trace of shape (kept, ``WIDTH``, ticks); to nothing; and to the numbers of signals and ticks of the trace.
+    It takes four pointers: to the kept signals, shape (``SLICE``, kept, ``width``); to the first tick of the slice in a
+    trace of shape (kept, ``width``, ticks); to nothing; and to the numbers of signals and ticks of the trace.
     """
     module, builder, (rows, trace, _, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
     kept, ticks = (builder.load(builder.gep(sizes, [ir.Constant(I64, number)])) for number in range(2))
-    across = builder.mul(kept, ir.Constant(I64, WIDTH))
+    across = builder.mul(kept, ir.Constant(I64, width))
     orders = [ir.Constant(ir.VectorType(ir.IntType(32), EDGE), order) for order in (LOW, HIGH)]
     with counted(builder, kept) as column, counted(builder, ir.Constant(I64, SLICE), EDGE) as tick:
-        for board in range(0, WIDTH, EDGE):
-            corner = _at(builder, rows, DOUBLE, (tick, across), (column, WIDTH), (board, 1))
+        for board in range(0, width, EDGE):
+            corner = _at(builder, rows, DOUBLE, (tick, across), (column, width), (board, 1))
             lines = [builder.load(_at(builder, corner, LINE, (i, across)), align=8) for i in range(EDGE)]
             for _ in range(EDGE.bit_length() - 1):
                 pairs = zip(lines[:HALF], lines[HALF:], strict=True)
                 lines = [builder.shuffle_vector(*pair, order) for pair in pairs for order in orders]
-            corner = _at(builder, trace, DOUBLE, (column, builder.mul(ticks, ir.Constant(I64, WIDTH))), (tick, 1))
+            corner = _at(builder, trace, DOUBLE, (column, builder.mul(ticks, ir.Constant(I64, width))), (tick, 1))
             for i, line in enumerate(lines):
                 builder.store(line, _at(builder, corner, LINE, (board + i, ticks)), align=8)
     builder.ret_void()

@@ -10,6 +10,8 @@ import numpy as np
 from core.block import BlockParams, FloatArray, parameter
 from core.board.commands import Inject
 from core.board.document import SUPERVISOR, Document, with_values
+from core.board.parse import parse
+from core.board.spec import Spec
 from core.errors import InputError
 from scenarios.measure.errors import rms
 from scenarios.studies.laws import label
@@ -97,23 +99,27 @@ def _ratios(board: Board, base: Document, params: Any) -> Iterator[tuple[str, fl
     bare = {key: value for key, value in base.items() if key != SUPERVISOR}
     pid = {"kind": "pid", "pole": params.pole, "feedforward": params.feedforward}
     others = {"supervised": base, "pid": _law(bare, pid), "mrac": _law(bare, {"kind": "mrac"})}
+    fixed, loops = parse(bare), {law: parse(document) for law, document in others.items()}
     for case, (fault, largest) in CASES.items():
         for share in SHARES:
             severity = round(largest * share, 10)
-            usual = _error(board, bare, fault, severity, params)
-            yield case, share, {law: _error(board, one, fault, severity, params) / usual for law, one in others.items()}
+            usual = _error(board, fixed, fault, severity, params)
+            yield case, share, {law: _error(board, one, fault, severity, params) / usual for law, one in loops.items()}
 
 
 def _law(document: Document, table: Document) -> Document:
     return with_values({key: value for key, value in document.items() if key != "diagnosers"}, {"controller": table})
 
 
-def _error(board: Board, document: Document, fault: str, severity: float, params: Any) -> float:
-    """Return the rms error of all runs in the second half of the time after the fault; no number after a trip."""
+def _error(board: Board, spec: Spec, fault: str, severity: float, params: Any) -> float:
+    """Return the rms error of all runs in the second half of the time after the fault; no number after a trip.
+
+    Boards of the same spec share their wiring, and a case takes longer to wire a board than to run it.
+    """
     errors: list[FloatArray] = []
     begins = params.samples // 4
     for run in range(params.runs):
-        one = type(board)({**document, "seed": board.spec.seed + run})
+        one = type(board)(spec.with_seed(board.spec.seed + run))
         one.apply(Inject(fault=fault, severity=severity, at_sample=begins))
         place, wanted = (one.signals.index(name) for name in ("plant.displacement", "model.displacement"))
         while one.tick < params.samples and (rows := one.advance(params.samples - one.tick)).count:

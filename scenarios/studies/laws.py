@@ -11,6 +11,8 @@ from pydantic import Field
 from core.block import BlockParams, parameter
 from core.board.commands import parse_command
 from core.board.document import Document
+from core.board.parse import parse
+from core.board.spec import Spec
 from core.loop.guard import Guard
 from scenarios.studies.study import Study, StudyPicture
 
@@ -58,9 +60,9 @@ class Laws(Study):
         for law in params.laws:
             trips = 0
             for noise in params.noise_um:
-                worst, of_noise = 0.0, label(1e3 * noise)
+                worst, of_noise, spec = 0.0, label(1e3 * noise), spec_of(board, law.controller, noise)
                 for change in params.faults:
-                    error, effort = run(board, law.controller, change.faults, noise, params.samples)
+                    error, effort = run(board, spec, change.faults, params.samples)
                     if not math.isfinite(effort):
                         trips += 1
                     else:
@@ -87,12 +89,15 @@ def label(noise_nm: float) -> str:
     return f"{noise_nm:g}".replace(".", "_")
 
 
-def run(
-    board: Board, controller: Document, faults: dict[str, float], noise_um: float, samples: int
-) -> tuple[float, float]:
-    """Return error and effort of a law on a device; where the guard trips, its travel and no number."""
+def spec_of(board: Board, controller: Document, noise_um: float) -> Spec:
+    """Return the bench under a law, at a noise; boards of the same spec share their wiring."""
     sensor = {**board.base.get("sensor", {}), "noise_um": noise_um}
-    fresh = type(board)({**board.base, "controller": controller, "sensor": sensor})
+    return parse({**board.base, "controller": controller, "sensor": sensor})
+
+
+def run(board: Board, spec: Spec, faults: dict[str, float], samples: int) -> tuple[float, float]:
+    """Return error and effort of a law on a device; where the guard trips, its travel and no number."""
+    fresh = type(board)(spec)
     for name, severity in faults.items():
         fresh.apply(parse_command({"fault": name, "severity": severity}), "study")
     at = [fresh.signals.index(name) for name in ("plant.displacement", "model.displacement")]

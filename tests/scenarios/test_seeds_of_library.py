@@ -45,6 +45,8 @@ DEAR = {
     "gyro-thermal-floor",
 }
 """Scenarios that the long suite alone runs at fresh seeds: records of many seconds, or hundreds of runs."""
+LONG = [pytest.mark.long, pytest.mark.timeout(900)]
+"""Marks of these: the time limit is for a hang, also on a machine that other work shares."""
 SHARE, CHANCE = 0.05, 1e-6
 
 
@@ -70,7 +72,7 @@ def missed(scenario: Scenario, seeds: Sequence[int]) -> Counter[str]:
     return found
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] if n in DEAR else []) for n in ids()])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=LONG if n in DEAR else []) for n in ids()])
 def test_an_expectation_holds_at_fresh_seeds(name: str) -> None:
     """It misses at 2 of 8 at most."""
     scenario = get(name)

@@ -14,7 +14,7 @@ from scenarios.comparator import FEEDFORWARD, POLES
 from scenarios.library import get
 from scenarios.run import run
 from scenarios.schema import Scenario
-from scenarios.studies.laws import Laws
+from scenarios.studies.laws import Laws, spec_of
 from scenarios.studies.laws import run as cell
 from tests.lab import rms
 
@@ -72,7 +72,8 @@ def bench() -> Board:
 
 
 def test_a_run_that_the_guard_ends_counts_with_its_travel() -> None:
-    error, effort = cell(bench(), {"kind": "open_loop"}, {"stiffness": -0.94}, 0.0, 6000)
+    board = bench()
+    error, effort = cell(board, spec_of(board, {"kind": "open_loop"}, 0.0), {"stiffness": -0.94}, 6000)
     assert error == 25.0
     assert np.isnan(effort)
 
@@ -81,7 +82,8 @@ def test_the_pid_is_the_best_of_its_family_on_the_healthy_device() -> None:
     board = bench()
 
     def error(pole: float, feedforward: float) -> float:
-        return cell(board, {"kind": "pid", "pole": pole, "feedforward": feedforward}, {}, 0.0, 6000)[0]
+        pid = {"kind": "pid", "pole": pole, "feedforward": feedforward}
+        return cell(board, spec_of(board, pid, 0.0), {}, 6000)[0]
 
     (own,) = (law["controller"] for law in get(ID).document["study"]["laws"] if law["name"] == "pid")
     assert own["pole"] == min(POLES, key=lambda pole: error(pole, 0.0))
