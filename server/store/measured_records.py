@@ -50,6 +50,10 @@ class KeptRecord(BaseModel):
     created: datetime
 
 
+_IN_USE: list[str | None] = []
+"""The folder of before, and the folders of the servers that run in this process."""
+
+
 class MeasuredRecords:
     """Keeps records, each for its owner.
 
@@ -67,16 +71,25 @@ class MeasuredRecords:
 
     @contextmanager
     def found_by_benches(self) -> Iterator[None]:
-        """Let the benches of this process, and of the processes it starts, find these records."""
-        before = os.environ.get(FOLDER)
-        os.environ[FOLDER] = str(self.folder.resolve())
+        """Let the benches of this process, and of the processes it starts, find these records.
+
+        Of several servers in one process the newest that still runs counts, whichever of them ends first.
+        """
+        before, own = os.environ.get(FOLDER), str(self.folder.resolve())
+        if not _IN_USE:
+            _IN_USE.append(before)
+        _IN_USE.append(own)
+        os.environ[FOLDER] = own
         try:
             yield
         finally:
-            if before is None:
+            _IN_USE.remove(own)
+            if (newest := _IN_USE[-1]) is None:
                 os.environ.pop(FOLDER, None)
             else:
-                os.environ[FOLDER] = before
+                os.environ[FOLDER] = newest
+            if len(_IN_USE) == 1:
+                _IN_USE.clear()
 
     @contextmanager
     def uploading(self) -> Iterator[Path]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,8 +17,10 @@ import pytest
 from core.measured_record import MeasuredRecord
 from scenarios.library import get
 from scenarios.records.bench import on_record
+from scenarios.records.shelf import FOLDER
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
+from server.store import measured_records
 from server.view3d.viewers import device_of
 from tests.scenarios.records.foreign import DT, draw
 from tests.server.classroom.group import Somebody, join, open_class
@@ -313,3 +316,20 @@ def test_records_outlive_the_server_and_uploads_under_way_do_not(tmp_path: Path)
         assert second.http.get(f"{RECORDS}/{made['id']}").json()["plot"]["sample"] == list(range(60))
         assert [path.name for path in listing(second)] == [f"{'0' * 64}.npz", f"{made['key']}.npz"]
         assert second.http.post(f"/api/v1/benches/{bench}/reopen").status_code == 200
+
+
+def test_of_two_servers_in_a_process_the_newest_that_runs_finds_its_records(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measured_records, "_IN_USE", [])
+    monkeypatch.setenv(FOLDER, "before")
+    first, second = (
+        measured_records.MeasuredRecords(None, tmp_path / name).found_by_benches()  # type: ignore[arg-type]
+        for name in ("first", "second")
+    )
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert os.environ[FOLDER] == str(tmp_path / "second")
+    second.__exit__(None, None, None)
+    assert os.environ[FOLDER] == "before"
