@@ -1,4 +1,4 @@
-import { formatCount } from "../ui/format";
+import { formatCount, formatSi } from "../ui/format";
 import { button, element, write } from "./dom";
 import type { FileBench } from "./file-bench";
 import type { FilePublished } from "./file-document";
@@ -76,7 +76,7 @@ export class PublishedRun {
     const digest = await this.bench.digest();
     const isSame = digest === this.published.digest;
     const word = isSame ? "✓ The same digest" : "✗ Another digest";
-    write(this.result, `${word}: ${digest.slice(0, SHOWN_OF_DIGEST)}…, in ${seconds.toFixed(1)} s`);
+    write(this.result, `${word}: ${digest.slice(0, SHOWN_OF_DIGEST)}…, in ${formatSi(seconds, "s", 2)}`);
     this.result.title = digest;
     this.result.dataset.same = String(isSame);
   }

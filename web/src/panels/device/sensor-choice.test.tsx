@@ -80,7 +80,7 @@ it("lists the sensors that give a displacement, and a switch for each that needs
 });
 
 it("says the known weaknesses of the sensor in use", async () => {
-  const weak = catalog.blocks.find((b) => b.family === "sense" && b.weaknesses.length > 0 && !b.axes?.length);
+  const weak = catalog.blocks.find((b) => b.family === "sense" && b.weaknesses.length > 0 && b.axes?.length === 0);
   connect({ ...bench, parameters: withSensor(weak?.name as string) });
   mount(<SensorChoice />);
   expect(await screen.findByRole("note")).toHaveTextContent(/^Known weakness/);
