@@ -23,7 +23,7 @@ class TuningVoltage(Block):
     plants = ("tuned_gyroscope",)
     slot = "tuning"
     equations = (Equation("softening", r"k_e=\frac{2\varepsilon_0AV^2}{g^3}", "not in the text"),)
-    structure = (Stage("Voltage", "", "tuning softening", ("softening",)),)
+    structure = (Stage("Voltage", "engaged", "tuning softening", ("softening",)),)
     weaknesses = (
         "Nothing measures the split: 1 % of stiffness along y moves it by 20 Hz on gyro-c, five times the half "
         "bandwidth of y.",

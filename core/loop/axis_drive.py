@@ -65,9 +65,13 @@ class AxisDrive(Block):
         quantum_un: float = parameter(0.0, "step of the converter, 0 for none", "uN", ge=0, le=1e4)
         bits: int = BITS
         by: Literal["force", "volts"] = parameter(
-            "force", "force as such, or volts on the combs of the device; the converter then has limit_v", live=False
+            "force",
+            "force as such, or volts on the combs of the device; the converter then has converter_limit_v",
+            live=False,
         )
-        limit_v: float | None = parameter(None, "limit to either side, by volts; 20 V unless given", "V", gt=0, le=1e4)
+        converter_limit_v: float | None = parameter(
+            None, "limit to either side, by volts; 20 V unless given", "V", gt=0, le=1e4
+        )
         kind: Literal["held", "analogue"] = parameter(
             "held",
             "held by a converter, or analogue, for controllers that know their force between samples",
@@ -93,13 +97,15 @@ class AxisDrive(Block):
     def quantum(cls, params: Any) -> float:
         """Return the step of the converter, 0 for none; by volts it is in volts."""
         if params.by == "volts":
-            return step_of(0.0, params.bits, params.limit_v or USUAL_V)
+            return step_of(0.0, params.bits, params.converter_limit_v or USUAL_V)
         return step_of(params.quantum_un, params.bits, params.limit_un)
 
     @classmethod
     def reach(cls, params: Any) -> float:
         """Return the largest force that is put out; by volts the largest voltage."""
-        return reach((params.limit_v or USUAL_V) if params.by == "volts" else params.limit_un, cls.quantum(params))
+        return reach(
+            (params.converter_limit_v or USUAL_V) if params.by == "volts" else params.limit_un, cls.quantum(params)
+        )
 
     @classmethod
     def reach_un(cls, params: Any, device: Oscillator) -> float:
@@ -113,7 +119,11 @@ class AxisDrive(Block):
     def unable(cls, params: Any, device: Oscillator, axes: tuple[str, ...]) -> tuple[str, str]:
         """Return the field that does not go with this drive or device, and why; nothing where all do."""
         if params.by == "force":
-            return ("limit_v", "limits the volts on combs; this drive is by force") if params.limit_v else ("", "")
+            return (
+                ("converter_limit_v", "limits the volts on combs; this drive is by force")
+                if params.converter_limit_v
+                else ("", "")
+            )
         without = [axis for axis in axes if combs(device, axis) is None]
         if without:
             return "by", f"this device has no combs along {', '.join(without)} for volts"

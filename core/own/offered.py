@@ -23,7 +23,7 @@ OFFERED: dict[str, tuple[str, ...]] = {
     "__future__": ("annotations",),
     "typing": ("Any", "Literal"),
     "core.block": ("Block", "BlockParams", "Context", "Equation", "Oscillator", "Stage", "parameter"),
-    "core.record": ("Choice", "Record", "Records", "Vector", "several", "vector"),
+    "core.record": ("Choice", "Record", "Records", "Vector", "several", "stream", "vector"),
     "core.ports": ("BlockPorts", "output", "reads", "tap"),
     "core.kernel": ("flush_tiny", "inlined", "kernel"),
     "core.converter": ("step_of",),

@@ -35,7 +35,7 @@ SLOTS = {"drive": DrivePorts, "sense": RatePorts}
 PUBLIC: dict[str, tuple[str, ...]] = {
     "reference": (),
     "control": (*REFERENCE, "model.displacement", "model.velocity", *MEASURED, *DRIVEN, "@engaged"),
-    "control, axes": (*MOTION, *CARRIER, "@engaged"),
+    "control, axes": (*MOTION, *CARRIER, "@engaged", "@tuning.softening"),
     "readout": ("@active.rate",),
     "diagnose": (*OBSERVED, *DRIVEN, *REFERENCE),
     "identify": (*OBSERVED, *DRIVEN, *REFERENCE),

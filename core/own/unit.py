@@ -30,7 +30,7 @@ from core.own.guarded import signed
 from core.own.kinds import NOTHING, NUMBER, Kind, RecordKind, Signals, is_alike
 from core.own.methods import FACTS, check_method
 from core.own.mistakes import BROKEN, Mistakes, follows
-from core.own.public import ALARMS, AXES, check_ports, slot_of
+from core.own.public import ALARMS, AXES, OBSERVED, check_ports, slot_of
 from core.own.steps import OwnSteps
 from core.own.text import UnitError, read, refuse
 from core.own.values import Own
@@ -174,7 +174,8 @@ def _family(declared: Declaration) -> str:
     ports = declared.inner.get("Ports", declared.base.Ports)
     if declared.base is Block and (issubclass(ports, EngagedPorts) or slot_of(ports)):
         return "control"
-    if declared.base is Block and any(port.source.startswith("plant.") for port in ports.declared):
+    sources = {port.source for port in ports.declared} - {*OBSERVED}
+    if declared.base is Block and any(source.startswith("plant.") for source in sources):
         return "sense"
     if declared.base is Block and any(port.source == "@active.rate" for port in ports.declared):
         return "readout"

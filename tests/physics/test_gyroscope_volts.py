@@ -69,7 +69,7 @@ def test_two_combs_pull_with_the_square_of_their_volts() -> None:
 
 
 def test_the_converter_and_the_limit_are_in_volts() -> None:
-    result = run(by_volts({**GYRO, "duration_ms": 2.0}, bits=8, limit_v=1.0 / 128.0), taps=True)
+    result = run(by_volts({**GYRO, "duration_ms": 2.0}, bits=8, converter_limit_v=1.0 / 128.0), taps=True)
     volts = result.signal("drive.x.voltage")
     assert np.abs(volts).max() == 1.0 / 128.0
     steps = volts * 128.0 * 128.0  # 2^8 steps over twice the limit
@@ -111,7 +111,7 @@ def test_a_drawn_device_has_the_combs_of_its_drawing() -> None:
             "drive.quantum_un",
             ["bits"],
         ),
-        ({"drive": {"limit_v": 3.0}}, "drive.limit_v", ["by force"]),
+        ({"drive": {"converter_limit_v": 3.0}}, "drive.converter_limit_v", ["by force"]),
         ({"device": {"id": "gyro-a", "electrodes": {"drive": {}}}}, "device", ["fingers", "no drawing"]),
         ({"device": {"id": "gyro-a", "electrodes": {"drive": {**COMB, "bias_v": 0}}}}, "bias_v", ["above 0"]),
     ],

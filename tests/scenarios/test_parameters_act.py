@@ -66,7 +66,7 @@ COMBS = {"plant": {"model": "gyroscope"}, "device": {"id": "gyro-a", "electrodes
 MATCHING = {"own.pilot_hz": 2000.0, "own.settle_ms": 0.0, "own.measure_ms": 1.5, "own.start_v": 35.0}
 WHERE: dict[str, dict[str, Any]] = {
     "axis_drive.by": COMBS,
-    "axis_drive.limit_v": {**COMBS, "own.by": "volts", "own.limit_v": 1e-4, "to": 2e-4},
+    "axis_drive.converter_limit_v": {**COMBS, "own.by": "volts", "own.converter_limit_v": 1e-4, "to": 2e-4},
     **{f"mode_matching.{name}": MATCHING for name in ("pilot_nm", "start_v", "gain", "split_hz")},
     "mode_matching.pilot_hz": {**MATCHING, "to": 2500.0},
     "mode_matching.settle_ms": {**MATCHING, "to": 0.1},

@@ -170,7 +170,7 @@ COMBS: dict[str, Any] = {
     "device": {"id": "gyro-a", "electrodes": {"drive": COMB, "sense": COMB}},
     "plant": {"model": "gyroscope"},
 }
-NEEDS = {"axis_drive.by": COMBS, "axis_drive.limit_v": {**COMBS, "drive": {"by": "volts"}}}
+NEEDS = {"axis_drive.by": COMBS, "axis_drive.converter_limit_v": {**COMBS, "drive": {"by": "volts"}}}
 """Settings of a bench without which a parameter is refused."""
 ALONE = (AXES["device"], TUNED["device"], COMBS["device"])
 """Devices of benches that are whole without the tables of a resonator."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from core.block import Block
 from core.own.declare import Declaration
+from core.own.mistakes import Mistakes
 from core.own.text import read
 from core.own.values import Mathematics
 from core.plain import plain
@@ -80,7 +81,7 @@ def _range(*ends: float) -> list[np.float64]:
 
 def oracle(block: type[Block]) -> Any:
     """Return the step of a unit as its text says it."""
-    declared = Declaration(read(block.text), "oracle")
+    declared = Declaration(read(block.text), "oracle", Mistakes())
     space: dict[str, Any] = {}
     for name, value in declared.names.items():
         if isinstance(value, Mathematics):

@@ -140,6 +140,7 @@ def test_slow_blocks_and_conditions_of_events_are_in_a_file():
     assert (found["digest"], kinds_of(found["log"])) == (native["digest"], native["kinds"])
 
 
+@pytest.mark.long
 def test_a_supervisor_with_a_table_acts_at_the_same_ticks():
     bout = Bout.of(with_values(get("ch5-redesign"), {"samples": 3000}))
     board = Board.restore(bout.start)

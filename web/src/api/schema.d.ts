@@ -11250,13 +11250,13 @@ export interface components {
              */
             bits?: number;
             /**
-             * @description force as such, or volts on the combs of the device; the converter then has limit_v
+             * @description force as such, or volts on the combs of the device; the converter then has converter_limit_v
              * @default force
              * @enum {string}
              */
             by?: "force" | "volts";
             /** @description limit to either side, by volts; 20 V unless given, V */
-            limit_v?: number | null;
+            converter_limit_v?: number | null;
             /**
              * @description held by a converter, or analogue, for controllers that know their force between samples
              * @default held
