@@ -27,7 +27,7 @@ class FeedThrough(Fault):
     """
 
     title = "Feed-through of the drive"
-    group, place = "Measurement", 24
+    group, place = "Measurement", 23
     shows = "sensor"
     changes = "measured displacement along y, by a share of the force of the drive; a read-out takes it for a rate"
     suggested = 1000.0

@@ -23,7 +23,7 @@ class Shock(Fault):
     """
 
     title = "Shock"
-    group, place = "Surroundings", 23
+    group, place = "Surroundings", 24
     shows = "frame"
     changes = (
         "acceleration along x in every plant; along y in the planar plant only. The stops are in the nonlinear and "

@@ -53,7 +53,7 @@ async function removeSignal(scope: Locator, name: string): Promise<void> {
     .getByRole("checkbox", { name: /^displacement/, checked: true })
     .first()
     .uncheck();
-  await scope.page().keyboard.press("Escape");
+  await scope.getByRole("button", { name: "Choose signals" }).click();
   await expect(picker).toBeHidden();
 }
 

@@ -19,7 +19,7 @@ export function ViewChoice({ panel }: { panel: IDockviewPanel }) {
   const views = viewsOn(name, axes && { axes });
   if (views.length < 2) return null;
   return (
-    <Menu position="bottom-end">
+    <Menu position="bottom-end" returnFocus>
       <Menu.Target>
         <button type="button" className="dock-view" aria-label={`Views of ${PANELS[name].title}: ${VIEW[shown].title}`}>
           {VIEW[shown].title} <IconChevronDown size={12} />
