@@ -1,3 +1,4 @@
+import { commandWords } from "./command-words";
 import type { FileBoard } from "./file-board";
 import type { Dependence, FileCommand } from "./file-document";
 
@@ -8,8 +9,16 @@ export interface Done {
   now: unknown;
 }
 
+/** The values before and after a command. */
+type Effect = Omit<Done, "text">;
+
 /** Carry out a command at this tick; a command that is not allowed changes nothing. */
-export function carryOut(board: FileBoard, command: FileCommand): Done {
+export const carryOut = (board: FileBoard, command: FileCommand): Done => ({
+  ...effectOf(board, command),
+  text: commandWords(command),
+});
+
+function effectOf(board: FileBoard, command: FileCommand): Effect {
   if ("fault" in command) return inject(board, command.fault, command.severity, command.variant ?? 0);
   if ("heal" in command) return heal(board, command.heal);
   if ("switch" in command) return switchTo(board, command.switch, command.cold ?? false);
@@ -17,7 +26,7 @@ export function carryOut(board: FileBoard, command: FileCommand): Done {
   return resetTrip(board);
 }
 
-function inject(board: FileBoard, name: string, severity: number, variant: number): Done {
+function inject(board: FileBoard, name: string, severity: number, variant: number): Effect {
   const fault = board.document.faults[name];
   if (!fault) throw new Error(`${name} is no fault of this file`);
   const before = board.faults.get(name);
@@ -33,11 +42,10 @@ function inject(board: FileBoard, name: string, severity: number, variant: numbe
   if (severity === 0) rest(board, fault.row);
   else board.running.add(fault.row);
   board.arrays.link(board.running);
-  const sign = severity < 0 ? "" : "+";
-  return { kind: "inject", text: `inject ${name} ${sign}${severity}`, old: before?.severity ?? null, now: severity };
+  return { kind: "inject", old: before?.severity ?? null, now: severity };
 }
 
-function heal(board: FileBoard, which: string[] | "all"): Done {
+function heal(board: FileBoard, which: string[] | "all"): Effect {
   const names = which === "all" ? [...board.faults.keys()] : which;
   const missing = names.find((name) => !board.faults.has(name));
   if (missing !== undefined) throw new Error(`${missing} is not there to heal`);
@@ -48,7 +56,7 @@ function heal(board: FileBoard, which: string[] | "all"): Done {
     rest(board, row);
   }
   board.arrays.link(board.running);
-  return { kind: "heal", text: `heal ${which === "all" ? "all" : names.join(", ")}`, old: names, now: null };
+  return { kind: "heal", old: names, now: null };
 }
 
 /** Let a row rest: its state is as new, and its signals are 0. */
@@ -59,7 +67,7 @@ function rest(board: FileBoard, row: number): void {
   for (const place of w) board.arrays.w.view[place] = 0;
 }
 
-function switchTo(board: FileBoard, name: string, isCold: boolean): Done {
+function switchTo(board: FileBoard, name: string, isCold: boolean): Effect {
   const { slots, writes } = board.document.wirings;
   const slot = slots[name];
   if (slot === undefined) throw new Error(`${name} is no controller of this file`);
@@ -82,10 +90,10 @@ function switchTo(board: FileBoard, name: string, isCold: boolean): Done {
     board.note({ actor: "board", kind: "warning", text, old: null, new: null });
   }
   if (isCold || hasRunAway) restore(board, state);
-  return { kind: "switch", text: `switch to ${name}${isCold ? " from a cold start" : ""}`, old, now: name };
+  return { kind: "switch", old, now: name };
 }
 
-function set(board: FileBoard, values: Record<string, number>): Done {
+function set(board: FileBoard, values: Record<string, number>): Effect {
   for (const [path, value] of Object.entries(values)) {
     const entry = board.document.values[path];
     if (!entry) throw new Error(`${path} is no value of this file`);
@@ -94,15 +102,13 @@ function set(board: FileBoard, values: Record<string, number>): Done {
       throw new Error(`${path} must be one of ${entry.dependence.grid.join(", ")} in a file`);
   }
   const old = Object.fromEntries(Object.keys(values).map((path) => [path, board.values[path]]));
-  for (const [path, value] of Object.entries(values)) {
+  for (const [path, value] of Object.entries(values))
     follow(board.arrays.p.view, board.document.values[path].dependence, value);
-    board.values[path] = value;
-  }
-  const words = Object.entries(values).map(([path, value]) => `${path} = ${value}`);
-  return { kind: "set", text: `set ${words.join(", ")}`, old, now: values };
+  board.values = { ...board.values, ...values }; // a checkpoint has the values of before
+  return { kind: "set", old, now: values };
 }
 
-function resetTrip(board: FileBoard): Done {
+function resetTrip(board: FileBoard): Effect {
   if (!board.trip) throw new Error("the board has not tripped");
   const { arrays, rows, wirings } = board.document;
   const { s, w } = board.arrays;
@@ -120,7 +126,7 @@ function resetTrip(board: FileBoard): Done {
   }
   const old = board.trip;
   board.trip = undefined;
-  return { kind: "reset_trip", text: "reset after the trip", old, now: null };
+  return { kind: "reset_trip", old, now: null };
 }
 
 /** Give a state the numbers it begins with. */

@@ -1,4 +1,5 @@
 import { carryOut, type Done } from "./carry-out";
+import { valueWords } from "./command-words";
 import type { FileBoard } from "./file-board";
 
 const differs = (one: unknown, other: unknown) => JSON.stringify(one) !== JSON.stringify(other);
@@ -22,7 +23,7 @@ export function obey(board: FileBoard): Done[] {
     const old = Object.fromEntries(left.map(([path]) => [path, board.supervised[path]]));
     for (const [i, place] of supervisor.places.entries()) p.view[Number(place)] = (numbers as Float64Array)[i];
     board.supervised = { ...board.supervised, ...act.set };
-    const words = left.map(([path, value]) => `${path} = ${value}`);
-    return [{ kind: "set", text: `set ${words.join(", ")}`, old, now: Object.fromEntries(left) }];
+    const now = Object.fromEntries(left);
+    return [{ kind: "set", text: `set ${valueWords(now)}`, old, now }];
   });
 }

@@ -1,5 +1,6 @@
 import type { components } from "../api/schema";
 import type { Bench, Command, LogEntry } from "../api/types";
+import { commandWords } from "../in-a-file/command-words";
 import type { FileBench } from "../in-a-file/file-bench";
 import type { FileCommand, FileEntry, FileEvent } from "../in-a-file/file-document";
 import type { Status } from "../stream/wire";
@@ -92,7 +93,7 @@ export class LiveBench {
     const before = stateOf(file);
     this.act(event);
     if (event.tick !== null || event.when) {
-      this.say(YOU, "scheduled", `waiting: ${wordsOf(event.command)}`, { command });
+      this.say(YOU, "scheduled", `waiting: ${commandWords(event.command)}`, { command });
       return;
     }
     const slot = "switch" in event.command ? file.document.wirings.slots[event.command.switch] : "";
@@ -257,7 +258,7 @@ export class LiveBench {
   private pending({ tick, when, command, actor = "scenario" }: FileEvent): Status["pending"][number] {
     const { signals, reserved } = this.file.document;
     const text = when ? `${signals[when[0] - reserved].name} ${when[1] > 0 ? ">" : "<"} ${when[2]}` : null;
-    return { text: wordsOf(command), actor, tick, when: text, command: { ...command } };
+    return { text: commandWords(command), actor, tick, when: text, command: { ...command } };
   }
 
   /** The scenario's document with all that was set since. */
@@ -289,15 +290,4 @@ function put(document: Record<string, unknown>, path: string, value: unknown): v
     table = table[part] as Record<string, unknown>;
   }
   table[name] = value;
-}
-
-function wordsOf(command: FileCommand): string {
-  if ("fault" in command) return `inject ${command.fault} ${command.severity < 0 ? "" : "+"}${command.severity}`;
-  if ("heal" in command) return `heal ${command.heal === "all" ? "all" : command.heal.join(", ")}`;
-  if ("switch" in command) return `switch to ${command.switch}`;
-  if ("set" in command)
-    return `set ${Object.entries(command.set)
-      .map(([path, value]) => `${path} = ${value}`)
-      .join(", ")}`;
-  return "reset after the trip";
 }
