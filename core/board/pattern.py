@@ -64,7 +64,7 @@ class Pattern:
         self.facts = set[str]().union(*self.read.values())
         """The facts that the numbers of these rows are made of."""
         self.varied: set[str] = set()
-        """Those of these facts in which benches have differed so far."""
+        """The facts in which benches have differed so far."""
         self._addresses: dict[int, int] = {}
         self.courses = Courses()
         """The changes that the commands of boards make, worked out once."""
@@ -72,7 +72,7 @@ class Pattern:
     def follow(self, read: set[str]) -> None:
         """Compare all facts of benches from now on if numbers are made of others than before."""
         if not read <= self.facts:
-            self.varied |= {*FACTS} - self.facts  # nobody has compared these
+            self.varied |= {*FACTS} - self.facts  # not compared so far
             self.facts = {*FACTS}
 
     def address(self, row: int) -> int:

@@ -67,7 +67,7 @@ class TrackingTask:
 
     An action is the voltage held over ``frame_skip`` samples, as a share of the limit of the drive (-1 to 1). An
     observation has reference voltage and applied voltage over this limit, and model, measurement and error (the model
-    minus the measurement) over the travel that the limit causes at rest. The reward is between 0 and 1, see
+    minus the measurement) over the static travel that the limit causes. The reward is between 0 and 1, see
     `scenarios.outside.rewards.Reward`; a trip terminates the episode, so that it costs all later rewards. The end of
     the scenario truncates it.
 
@@ -259,7 +259,7 @@ def _guard(scenario: Scenario) -> Guard.Params:
 
 
 def _scale_um(scenario: Scenario) -> float:
-    """Return the travel of the device at rest under the limit of the drive, or of the guard where this is less."""
+    """Return the static travel under the limit of the drive, or the travel of the guard where this is less."""
     device, travel = scenario.spec.nominal, float(_guard(scenario).travel_um)
     force = abs(device.force) * scenario.spec.context().limit_v
     return min(travel, force / device.stiffness) if device.stiffness > 0.0 else travel
