@@ -76,7 +76,7 @@ def source(one: FmuLayout, blocks: Sequence[type[Block]], token: str) -> str:
     array("guards", guards, "int64_t")
     texts = [json.dumps(REASONS[k][0].format(signal=REASONS[k][1])) if k in REASONS else '""' for k in range(_codes())]
     lines.append(f"static const char *const reasons[] = {{{', '.join(texts)}}};")
-    p, found = wiring.p.copy(), []
+    found = []
     for k, (name, entry) in enumerate(one.faults.items()):
         row, chosen = entry["row"], entry["variants"][0]
         packed, first = chosen["packed"], first_severity(one, name)
@@ -90,7 +90,7 @@ def source(one: FmuLayout, blocks: Sequence[type[Block]], token: str) -> str:
         signals = f"fault_{k}_packed, {len(places)}, fault_{k}_signals"
         found.append(f'{{"{name}", {numbers}, {signals}, {low}, {high}, {_number(first, "double")}, {follows}}}')
     lines.append(f"static const Fault faults[] = {{{', '.join(found) or '{0}'}}};")
-    array("p_first", p)
+    array("p_first", wiring.p)
     values = []
     for k, (path, entry) in enumerate(one.values.items()):
         follows = dependence(f"value_{k}", entry["dependence"])
