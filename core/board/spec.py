@@ -21,6 +21,7 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
 from core.measured_record import PlayedRecord, record_of
+from core.plant.gyroscope_pair import GyroscopePair
 from core.plant.record import RecordPlant
 from core.table import Table
 
@@ -139,6 +140,12 @@ class Spec:
         return self.device.oscillator()
 
     @cached_property
+    def partner(self) -> Oscillator | None:
+        """The second device of a pair, nominal."""
+        params = self.plant.params
+        return params.partner.oscillator() if isinstance(params, GyroscopePair.Params) else None
+
+    @cached_property
     def banks(self) -> dict[str, dict[str, Oscillator]]:
         """The devices that each diagnoser chooses between, by the names of its hypotheses."""
         banks = {key: hypotheses_of(section.params) for key, section in self.diagnosers.items()}
@@ -229,13 +236,14 @@ class Spec:
             seed=self.seed,
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
+            partner=self.partner,
             drawing=self.device.drawing,
             temperature_k=cast(Environment.Params, self.environment.params).temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
             limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=AxisDrive.reach_un(drive, nominal) if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_un=AxisDrive.reach_un(drive, nominal, self.partner) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
             banks=self.banks,
