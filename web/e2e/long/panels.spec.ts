@@ -6,8 +6,6 @@ import {
   expectClean,
   expectFits,
   expectReadable,
-  isPhone,
-  nameOf,
   openOnPhone,
   SCHEMES,
   SCREENS,
@@ -37,29 +35,6 @@ for (const [device, scenario] of Object.entries({ resonator: "first-look", gyros
       await openOnPhone(page, view);
       expect.soft(await seriousViolations(page), view).toEqual([]);
     }
-  });
-
-/** The tabs of each group whose strip has no room for all of them. */
-const cutTabs = (page: Page) =>
-  page
-    .getByRole("tablist")
-    .evaluateAll((strips) => strips.filter((s) => s.scrollWidth > s.clientWidth + 1).map((s) => s.textContent));
-
-for (const scenario of ["first-look", "gyro-diagnosis"])
-  test(`no tab of a built-in layout of ${scenario} is cut, whichever is in front`, async ({ page, server }) => {
-    await page.request.get(server.url);
-    const { id } = await server.ask<{ id: string }>("POST", "/benches", { scenario });
-    for (const layout of ["lecture", "lab", "research"])
-      for (const screen of SCREENS.filter((one) => !isPhone(one))) {
-        await page.goto(`${server.origin}/?bench=${id}&layout=${layout}`);
-        await showOn(page, screen);
-        await expect(page.getByTestId("bench-state")).toHaveText("running"); // the views depend on the bench
-        for (const tab of await page.getByRole("tab").all()) {
-          await tab.click();
-          await expect(tab).toHaveAttribute("aria-selected", "true");
-          expect.soft(await cutTabs(page), `${layout} at ${nameOf(screen)}, ${await tab.textContent()}`).toEqual([]);
-        }
-      }
   });
 
 test("axe finds nothing serious on the pages Theory and Designer", async ({ page, server }) => {
