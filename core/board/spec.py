@@ -21,7 +21,6 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
 from core.measured_record import PlayedRecord, record_of
-from core.plant.gyroscope_pair import GyroscopePair
 from core.plant.record import RecordPlant
 from core.table import Table
 
@@ -142,8 +141,8 @@ class Spec:
     @cached_property
     def partner(self) -> Oscillator | None:
         """The second device of a pair, nominal."""
-        params = self.plant.params
-        return params.partner.oscillator() if isinstance(params, GyroscopePair.Params) else None
+        partner = getattr(self.plant.params, "partner", None)
+        return partner.oscillator() if isinstance(partner, Device) else None
 
     @cached_property
     def banks(self) -> dict[str, dict[str, Oscillator]]:
