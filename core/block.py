@@ -126,6 +126,8 @@ class Context:
         The nominal device.
     model : Oscillator
         The reference model the shuttle should follow.
+    partner : Oscillator, optional
+        The second device of a pair, nominal.
     drawing : BlockParams, optional
         Drawing of the device (``core.device.geometry``).
     temperature_k : float
@@ -159,6 +161,7 @@ class Context:
     seed: int
     device: Oscillator
     model: Oscillator
+    partner: Oscillator | None = None
     drawing: BlockParams | None = None
     temperature_k: float = 300.0
     stator_voltages: tuple[float, float] = (0.0, 0.0)

@@ -97,9 +97,11 @@ def suited(spec: Spec) -> Spec:
     if spec.is_analogue:
         _refuse_held(spec)
     if isinstance(drive := spec.drive.params, AxisDrive.Params):
-        name, reason = AxisDrive.unable(drive, nominal, spec.axes)
+        name, reason = AxisDrive.unable(drive, nominal, spec.partner, spec.axes)
         if reason:
-            raise InputError(reason, f"drive.{name}", "by volts needs device.electrodes; by force needs none")
+            raise InputError(
+                reason, f"drive.{name}", "by volts needs combs in the electrodes of every device; by force needs none"
+            )
     for key in CHOSEN:
         fields |= {f"{key}.{name}.kind": section.block for name, section in getattr(spec, key).items()}
     fields |= {f"{key}.kind": section.block for key, section in spec.supervisors.items()}

@@ -85,7 +85,7 @@ def changed(spec: Spec, values: dict[str, Any]) -> Spec:
         new = _parse(completed(document), spec)
     except InputError as error:
         raise as_written(error, document, written(document)) from None
-    if all(getattr(new, name) is getattr(spec, name) for name in OF_CONTEXT):
+    if all(getattr(new, name) is getattr(spec, name) for name in OF_CONTEXT) and new.partner == spec.partner:
         vars(new)["_contexts"] = spec._contexts
     return new
 

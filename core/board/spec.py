@@ -139,6 +139,12 @@ class Spec:
         return self.device.oscillator()
 
     @cached_property
+    def partner(self) -> Oscillator | None:
+        """The second device of a pair, nominal."""
+        partner = getattr(self.plant.params, "partner", None)
+        return partner.oscillator() if isinstance(partner, Device) else None
+
+    @cached_property
     def banks(self) -> dict[str, dict[str, Oscillator]]:
         """The devices that each diagnoser chooses between, by the names of its hypotheses."""
         banks = {key: hypotheses_of(section.params) for key, section in self.diagnosers.items()}
@@ -228,13 +234,14 @@ class Spec:
             seed=self.seed,
             device=nominal,
             model=Model.oscillator(self.model.params, nominal),
+            partner=self.partner,
             drawing=self.device.drawing,
             temperature_k=cast(Environment.Params, self.environment.params).temperature_k,
             stator_voltages=self.device.stators_v,
             capacitance_gradient=self.device.capacitance_gradient,
             analogue=self.is_analogue,
             limit_v=Drive.reach(drive) if isinstance(drive, Drive.Params) else 0.0,
-            limit_un=AxisDrive.reach_un(drive, nominal) if isinstance(drive, AxisDrive.Params) else 0.0,
+            limit_un=AxisDrive.reach_un(drive, nominal, self.partner) if isinstance(drive, AxisDrive.Params) else 0.0,
             tone_hz=self.tone_hz,
             sensors={name: section.params for name, section in self.sensors.items()},
             banks=self.banks,

@@ -18,15 +18,23 @@ USUAL_SHARE = 0.436
 class ForceToRebalance(Block):
     r"""Holds y at zero with a force in step with the velocity of x, the rate, and one with x, the quadrature.
 
-    .. math:: F_y=u_c\cos\theta'+u_s\sin\theta',\quad\dot u_s+j\dot u_c=-gm_ye^{j\psi}(Y_s+jY_c)
+    .. math:: F_y=u_c\cos\theta'+u_s\sin\theta',\quad\dot u_s+j\dot u_c=-gm_y\frac{D-k_e}{|D|}(Y_s+jY_c)
 
     .. math:: \hat\Omega=\frac{u_c}{2m_c\omega A},\quad\hat\Omega_q=\frac{u_s}{2m_c\omega A}
 
     :math:`\omega` is the frequency of the carrier: with y at zero x rings at :math:`\sqrt{k_{xx}/m_x}`, 3.7 % above the
-    mode of set A. :math:`\psi` is the phase of :math:`k_{yy}-m_y\omega^2+j\omega d_{yy}`, nominal. A held force is late
-    by half a sample, :math:`\omega h/2`, so without ``advance`` a part :math:`\Omega_q\sin(\omega h/2)` of the
-    quadrature reads as a rate; :math:`\theta'=\theta+\omega h/2` compensates it. The loop is stable below the gain
-    :math:`g<|k_{yy}/m_y-\omega^2|\,d_{yy}/2m_y`, the damping of y against the split of the modes.
+    mode of set A. :math:`D=k_{yy}-m_y\omega^2+j\omega d_{yy}` is nominal, and :math:`k_e` is the stiffness that a
+    tuning electrode takes away, as far as its controller knows: the force has the phase that y needs, also at matched
+    modes. A held force is late by half a sample, :math:`\omega h/2`, so without ``advance`` a part
+    :math:`\Omega_q\sin(\omega h/2)` of the quadrature reads as a rate, and :math:`\theta'=\theta+\omega h/2`
+    compensates it. The loop is stable below the gain :math:`g<|D|\,d_{yy}/2m_y^2`, the damping of y against the split
+    of the modes. With the share :math:`\lambda` of this gain and :math:`\sigma=d_{yy}/2m_y`, a rate passes at matched
+    modes as
+
+    .. math:: \frac{\hat\Omega}\Omega=\frac{\lambda\sigma^2}{s^2+\sigma s+\lambda\sigma^2},
+
+    stable with every gain, and far apart as :math:`\lambda\sigma/(s+\lambda\sigma)`. A split :math:`\Delta` in place
+    of the split :math:`\rho` that it counts with is stable while :math:`\sigma^2+\rho(\Delta-\lambda\rho)>0`.
     """
 
     title = "Force to rebalance"
@@ -48,6 +56,8 @@ class ForceToRebalance(Block):
         "One frequency does not tell the rate from the cross damping, so d_xy/2m_c is read as a rate: 57 deg/s on set "
         "A, 216 on set B. Nothing says by how much the rate is off.",
         "The loop needs 2m/(0.436 d) to settle, 0.46 s on set A.",
+        "It rings where the split of the modes is less than 0.43 of the split it counts with, as after a loss of 1.5 % "
+        "of the stiffness along y on gyro-c. At matched modes it holds whatever the spring then does.",
     )
 
     class Params(BlockParams):
@@ -61,11 +71,12 @@ class ForceToRebalance(Block):
         bandwidth_hz: float = parameter(50.0, "bandwidth of the low-pass behind the rate", "Hz", gt=0, le=1e5)
 
     class Packed(Record):
-        """Sense axis, gain per sample with the phase of the sense axis, phase of the force, low-pass."""
+        """Sense axis, gain per sample with its phase and for each softening, phase of the force, low-pass."""
 
         sense: Sense
         gain_cosine: float
         gain_sine: float
+        per_softening: float
         lead: float
         ahead: float
         kept: float
@@ -98,6 +109,7 @@ class ForceToRebalance(Block):
             gain = USUAL_SHARE * size / device.mass_y * device.damping_y / (2.0 * device.mass_y)
         per_sample = gain * device.mass_y * context.dt_ms
         p.gain_cosine, p.gain_sine = per_sample * cos(phase), per_sample * sin(phase)
+        p.per_softening = per_sample / size
         p.lead = math.radians(params.phase_error_deg)
         p.ahead = 0.5 * context.dt_ms if params.advance else 0.0
         p.kept = share_kept(1e3 / (2.0 * math.pi * params.bandwidth_hz), context.dt_ms)
@@ -109,8 +121,9 @@ class ForceToRebalance(Block):
         omega = 2e-3 * math.pi * x.frequency
         in_step, with_velocity = components(x.y_measured, x.y_velocity, omega, x.sine, x.cosine)
         if x.engaged != 0.0:
-            s.in_step -= p.gain_cosine * in_step - p.gain_sine * with_velocity
-            s.with_velocity -= p.gain_cosine * with_velocity + p.gain_sine * in_step
+            gain_cosine = p.gain_cosine - p.per_softening * x.softening
+            s.in_step -= gain_cosine * in_step - p.gain_sine * with_velocity
+            s.with_velocity -= gain_cosine * with_velocity + p.gain_sine * in_step
         turn = p.lead + p.ahead * omega
         turn_cosine, turn_sine = cos(turn), sin(turn)
         sine = x.sine * turn_cosine + x.cosine * turn_sine

@@ -63,9 +63,8 @@ class ModeMatching(Block):
     )
     weaknesses = (
         "A read-out that holds y at zero with a bandwidth near the pilot frequency takes the answers away.",
-        "The loop of force_to_rebalance turns its gain by the phase of the nominal sense axis, which matched modes "
-        "change by up to 90 degrees. The open-loop read-out counts with the softening, and with correct_phase it reads "
-        "the rate at matched modes.",
+        "The open-loop read-out counts with the softening, and with correct_phase it reads the rate at matched modes. "
+        "force_to_rebalance turns its force by the softening, and reads the rate whatever the split.",
         "The pilots are a ripple of the rate at the pilot frequency, which the low-pass of the read-out must remove.",
         "Beyond a split as large as the pilot frequency the measured split is too small, though of the right sign.",
     )

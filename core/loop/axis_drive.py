@@ -11,6 +11,8 @@ from core.kernel import kernel
 from core.ports import BlockPorts, output, reads, tap
 from core.record import Record
 
+AXES, OF_PARTNER = ("x", "y", "partner_x", "partner_y"), "partner_"
+"""Axes that a device and its partner may have, and the mark of the latter."""
 USUAL_V = 20.0
 """Limit of the voltage on combs unless it is given."""
 
@@ -108,15 +110,17 @@ class AxisDrive(Block):
         )
 
     @classmethod
-    def reach_un(cls, params: Any, device: Oscillator) -> float:
+    def reach_un(cls, params: Any, device: Oscillator, partner: Oscillator | None) -> float:
         """Return the largest force that is put out along every axis with combs, uN."""
         if params.by == "force":
             return cls.reach(params)
-        found = [comb.per_volt for axis in ("x", "y") if (comb := combs(device, axis)) is not None]
+        found = [comb.per_volt for axis in AXES if (comb := combs(device, partner, axis)) is not None]
         return cls.reach(params) * min(found, default=0.0)
 
     @classmethod
-    def unable(cls, params: Any, device: Oscillator, axes: tuple[str, ...]) -> tuple[str, str]:
+    def unable(
+        cls, params: Any, device: Oscillator, partner: Oscillator | None, axes: tuple[str, ...]
+    ) -> tuple[str, str]:
         """Return the field that does not go with this drive or device, and why; nothing where all do."""
         if params.by == "force":
             return (
@@ -124,9 +128,9 @@ class AxisDrive(Block):
                 if params.converter_limit_v
                 else ("", "")
             )
-        without = [axis for axis in axes if combs(device, axis) is None]
+        without = [axis for axis in axes if combs(device, partner, axis) is None]
         if without:
-            return "by", f"this device has no combs along {', '.join(without)} for volts"
+            return "by", f"no combs for volts along {', '.join(without)}"
         return (
             ("quantum_un", "is the step of a force; by volts the converter has bits") if params.quantum_un else ("", "")
         )
@@ -138,7 +142,7 @@ class AxisDrive(Block):
         p.limit, p.quantum = cls.reach(params), cls.quantum(params)
         p.analogue = params.kind == "analogue"
         p.gradient, p.bias_v, p.per_volt = 0.0, 0.0, 0.0
-        comb = combs(context.device, context.axis) if params.by == "volts" else None
+        comb = combs(context.device, context.partner, context.axis) if params.by == "volts" else None
         if comb is not None:
             p.gradient, p.bias_v, p.per_volt = comb.gradient, comb.bias_v, comb.per_volt
         return p
@@ -158,7 +162,8 @@ class AxisDrive(Block):
         x.voltage = 0.0 if p.per_volt == 0.0 else convert(p, asked)
 
 
-def combs(device: Oscillator, axis: str) -> PushPull | None:
-    """Return the combs of a device along an axis."""
-    found: PushPull | None = getattr(device, f"comb_{axis}", None)
+def combs(device: Oscillator, partner: Oscillator | None, axis: str) -> PushPull | None:
+    """Return the combs along an axis, of a device or of its partner."""
+    own = axis.removeprefix(OF_PARTNER)
+    found: PushPull | None = getattr(device if own == axis else partner, f"comb_{own}", None)
     return found

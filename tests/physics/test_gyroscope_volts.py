@@ -20,6 +20,7 @@ COMB = {"bias_v": 20.0, "fingers": 20_000, "thickness_um": 60.0, "gap_um": 3.0}
 """Strong enough for the hundreds of uN of set A off resonance."""
 SHORT = (
     "ch6-mimo-late",
+    "ch6-sense-axis-sync",
     "gyro-adaptive",
     "gyro-diagnosis",
     "gyro-finger-short",
@@ -30,7 +31,10 @@ SHORT = (
     "gyro-whole-angle",
 )
 LONG = (
+    "ch6-drift",
+    "ch6-gyro-imperfections",
     "ch6-mimo",
+    "ch6-phase-sync",
     "gyro-comb-device",
     "gyro-forced-drive",
     "gyro-not-exciting",
@@ -43,7 +47,10 @@ def by_volts(document: dict[str, Any], **drive: object) -> Scenario:
     """Return a scenario whose forces come from volts on combs."""
     found = copy.deepcopy(document)
     found["drive"] = {**found.get("drive", {}), "by": "volts", **drive}
-    found["device"] = {**found["device"], "electrodes": {"drive": COMB, "sense": COMB}}
+    electrodes = {"drive": COMB, "sense": COMB}
+    found["device"] = {**found["device"], "electrodes": electrodes}
+    if "partner" in found["plant"]:
+        found["plant"]["partner"]["electrodes"] = electrodes
     return Scenario.load(found)
 
 
@@ -66,6 +73,40 @@ def test_two_combs_pull_with_the_square_of_their_volts() -> None:
     more, less = COMB["bias_v"] + volts, COMB["bias_v"] - volts
     assert np.abs(volts).max() > 1e-3
     np.testing.assert_allclose(1e-6 * forces, 0.5 * slope * (more**2 - less**2), rtol=1e-9, atol=1e-18)
+
+
+def test_volts_on_combs_are_the_same_force() -> None:
+    """The same uN as by force, but for the rounding of a division and two squares."""
+    ticks = {**GYRO, "duration_ms": 20.0}
+    by_force, volts = run(Scenario.load(ticks)), run(by_volts(ticks))
+    for signal in ("drive.x.force", "drive.y.force"):
+        forces = by_force.signal(signal)
+        assert np.abs(forces).max() > 0.1
+        np.testing.assert_allclose(volts.signal(signal), forces, atol=1e-9 * np.abs(forces).max())
+
+
+def test_a_partner_is_driven_by_its_own_combs() -> None:
+    """Half the fingers need twice the volts for the same force."""
+    own = {"drive": {**COMB, "fingers": 100}, "sense": COMB}
+    partner = {"drive": {**COMB, "fingers": 50}, "sense": COMB}
+    document = {
+        **GYRO,
+        "device": {"id": "gyro-2-2", "electrodes": own},
+        "plant": {"model": "gyroscope_pair", "partner": {"electrodes": partner}, "thermal_noise": False},
+        "controller": {"kind": "open_loop_rate"},
+        "slots": {"drive": "drive_tracking"},
+        "sensor": {"kind": "pick_off"},
+        "drive": {"by": "volts"},
+        "duration_ms": 2.0,
+    }
+    result = run(Scenario.load(document), taps=True)
+    for axis, fingers in (("x", 100), ("partner_x", 50)):
+        forces, volts = result.signal(f"drive.{axis}.force"), result.signal(f"drive.{axis}.voltage")
+        slope = 2.0 * fingers * EPSILON_0 * COMB["thickness_um"] / COMB["gap_um"]
+        assert np.abs(forces).max() > 0.0
+        np.testing.assert_allclose(1e-6 * forces, 2.0 * slope * COMB["bias_v"] * volts, rtol=1e-9, atol=1e-18)
+    with pytest.raises(InputError, match="no combs for volts along partner_y"):
+        Scenario.load({**document, "plant": {**document["plant"], "partner": {"electrodes": {"drive": COMB}}}})
 
 
 def test_the_converter_and_the_limit_are_in_volts() -> None:
@@ -102,7 +143,7 @@ def test_a_drawn_device_has_the_combs_of_its_drawing() -> None:
 @pytest.mark.parametrize(
     ("changes", "field", "words"),
     [
-        ({"drive": {"by": "volts"}}, "drive.by", ["no combs along x, y"]),
+        ({"drive": {"by": "volts"}}, "drive.by", ["no combs", "along x, y"]),
         (
             {
                 "device": {"id": "gyro-a", "electrodes": {"drive": COMB, "sense": COMB}},

@@ -2,63 +2,34 @@
 
 from __future__ import annotations
 
-import copy
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.signal import welch
 
 from core.device.catalogue import device
 from core.device.two_axis import TwoAxis
 from core.errors import InputError
-from scenarios.run import RunResult, run
-from scenarios.schema import Scenario
+from tests.tuned import (
+    BOLTZMANN,
+    D_X,
+    D_Y,
+    GAP,
+    K_X,
+    K_XY,
+    K_Y,
+    MASS_X,
+    MASS_Y,
+    OMEGA,
+    ran,
+    softening,
+    split_hz,
+    stiffness_of_y,
+    volts_for,
+)
 from tests.two_axis import held
-
-EPSILON_0, BOLTZMANN = 8.8541878128e-12, 1.380649e-23
-MASS_X, MASS_Y, K_X, K_Y, K_XY, D_X, D_Y = 1.42, 1.58, 863.7569, 987.2898, 0.272048, 7.4945e-3, 8.7964e-2
-"""gyro-c in mg, uN/um, uN ms/um."""
-AREA, GAP = 20 * 400.0 * 60.0, 3.0
-OMEGA = np.sqrt(K_X / MASS_X)
-TUNED: dict[str, Any] = {
-    "sample_rate_khz": 20,
-    "seed": 1,
-    "device": {"id": "gyro-c", "electrodes": {"tuning": {}}},
-    "plant": {"model": "tuned_gyroscope", "thermal_noise": False},
-    "rate": {"kind": "constant", "deg_per_s": 0.0},
-    "slots": {"drive": "drive_loop", "tuning": "tuning_voltage"},
-    "controller": {"kind": "open_loop_rate", "correct_phase": True},
-    "sensor": {"kind": "pick_off"},
-}
-
-
-def ran(duration_ms: float, changes: dict[str, Any] | None = None) -> RunResult:
-    document = copy.deepcopy(TUNED) | {"duration_ms": duration_ms}
-    for path, value in (changes or {}).items():
-        table = document
-        *parents, name = path.split(".")
-        for parent in parents:
-            table = table.setdefault(parent, {})
-        table[name] = value
-    return run(Scenario.load(document), taps=True)
-
-
-def softening(volts: float) -> float:
-    """Return 2 eps A V^2/g^3 of plates on both sides, uN/um."""
-    return 2.0 * EPSILON_0 * AREA * 1e-12 * volts**2 / (GAP * 1e-6) ** 3
-
-
-def split_hz(volts: float) -> float:
-    return float(1e3 * (np.sqrt((K_Y - softening(volts)) / MASS_Y) - OMEGA) / (2.0 * np.pi))
-
-
-def volts_for(split: float) -> float:
-    return float(np.sqrt((K_Y - MASS_Y * (OMEGA + 2e-3 * np.pi * split) ** 2) / softening(1.0)))
-
-
-def stiffness_of_y(omega: np.ndarray, volts: float) -> np.ndarray:
-    return K_Y - softening(volts) - MASS_Y * omega**2 + 1j * omega * D_Y
 
 
 def test_a_voltage_softens_the_spring_of_the_sense_axis() -> None:
@@ -198,12 +169,22 @@ def test_pull_in_is_refused_or_stops_the_board() -> None:
 
 
 def test_a_swing_beyond_the_unstable_point_is_a_pull_in() -> None:
-    """The electrode wins beyond g sqrt(1 - V/V_pi): pV^2 g y/(g^2 - y^2)^2 = k y."""
+    """The electrode wins beyond g sqrt(1 - V/V_pi): pV^2 g y/(g^2 - y^2)^2 = k y, and so says the motion."""
     volts, limit = 30.0, np.sqrt((K_Y - K_XY**2 / K_X) / softening(1.0))
     y = GAP * np.sqrt(1.0 - volts / limit)
     pull = softening(volts) * GAP**3 * GAP * y / (GAP**2 - y**2) ** 2
     assert pull == pytest.approx((K_Y - K_XY**2 / K_X) * y, rel=1e-9)
+
+    def motion(t: float, q: np.ndarray) -> list[float]:
+        pulled = softening(volts) * GAP**3 * GAP * q[0] / (GAP**2 - q[0] ** 2) ** 2
+        return [q[1], (pulled - (K_Y - K_XY**2 / K_X) * q[0] - D_Y * q[1]) / MASS_Y]
+
+    def touches(t: float, q: np.ndarray) -> float:
+        return float(q[0] - 0.999 * GAP)
+
+    touches.terminal = True  # type: ignore[attr-defined]
     for start, stops in ((0.99 * y, False), (1.01 * y, True)):
+        assert (solve_ivp(motion, (0.0, 2.0), [start, 0.0], events=touches, rtol=1e-8).status == 1) == stops
         changes = {"controllers.tuning_voltage.voltage_v": volts, "plant.initial_y_um": float(start)}
         assert (ran(0.003, changes | {"sample_rate_khz": 1000}).trip is not None) == stops
 

@@ -42,11 +42,20 @@ def allan(values: NDArray[np.float64], count: int) -> float:
 def test_the_allan_deviation_is_flat_at_the_flicker_floor() -> None:
     values = np.concatenate([noise("x", 100_000, seed=seed) for seed in (1, 2)])
     floor = math.sqrt(2.0 * math.log(2.0)) * DENSITY_PM
-    found = [allan(values, count) for count in (100, 300, 1000)]
-    assert found == pytest.approx([floor] * 3, rel=0.12)
+    counts = (100, 200, 500, 1000)
+    found = [allan(values, count) for count in counts]
+    assert found == pytest.approx([floor] * 4, rel=0.12)
+    assert np.polyfit(np.log(counts), np.log(found), 1)[0] == pytest.approx(0.0, abs=0.06)  # white noise: -1/2
 
 
 def test_each_axis_has_a_stream_of_its_own_and_none_has_noise_without_a_density() -> None:
     x, y = noise("x", 20_000), noise("y", 20_000)
     assert abs(np.corrcoef(np.diff(x), np.diff(y))[0, 1]) < 0.05
     assert (noise("y", 200, **{"sensor.flicker_pm_rthz": 0.0}) == 0.0).all()
+
+
+def test_the_noise_begins_as_if_it_had_gone_on_for_ever() -> None:
+    """Nine processes of the variance c^2 ln 10 each."""
+    first = np.array([noise("x", 1, seed=seed)[0] for seed in range(24)])
+    expected = 9.0 * math.log(10.0) * DENSITY_PM**2
+    assert np.mean(first**2) == pytest.approx(expected, rel=4.5 * math.sqrt(2.0 / len(first)))

@@ -135,6 +135,12 @@ def test_a_rate_that_runs_every_few_ticks_has_the_noise_of_its_own_samples():
     assert held.var() == pytest.approx(SI**2 / 5e-3, rel=4.5 * math.sqrt(2 / len(held)))
 
 
+def test_a_rate_that_runs_every_few_ticks_has_the_flicker_of_its_own_samples():
+    flicker = ("rate", "constant", {"bias_instability_deg_h": B})
+    every_fifth = Row(flicker, dt_ms=DT_MS, every=5).play(5000)[::5, 0]
+    assert np.array_equal(every_fifth, Row(flicker, dt_ms=5 * DT_MS).play(1000)[:, 0])
+
+
 def test_white_noise_keeps_a_value_for_a_millisecond():
     rate = noise(1, 20_000, dt_ms=0.01, angle_random_walk_deg_rt_h=N).reshape(-1, 100)
     assert np.all(rate == rate[:, :1])
