@@ -124,7 +124,7 @@ it("draws the way of a supervisor to the controller it changes, and none of one 
 
 it("says the acronym of a controller whose name has no room", async () => {
   await mountPanel(driving("adrc"));
-  expect(within(loop()).getByText("ADRC")).toBeInTheDocument();
+  expect(await within(loop()).findByText("ADRC")).toBeInTheDocument();
 });
 
 it("cuts a verdict that is longer than its box", async () => {
