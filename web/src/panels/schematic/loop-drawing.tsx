@@ -104,6 +104,7 @@ const MOST_TITLE = 14;
 
 /** A title for a box: without its brackets, or the acronym in them where the words have no room. */
 function shorten(title: string): string {
-  const [, words, brackets] = /^(.*?)\s*(?:\((.*)\))?$/.exec(title) ?? [];
-  return words.length > MOST_TITLE && /^[A-Z]+$/.test(brackets ?? "") ? brackets : cut(words, MOST_TITLE);
+  const words = title.replace(/\s*\(.*\)$/, "");
+  const acronym = /\(([A-Z]+)\)$/.exec(title)?.[1];
+  return acronym && words.length > MOST_TITLE ? acronym : cut(words, MOST_TITLE);
 }
