@@ -100,6 +100,17 @@ it("shows the past when a key pans, and live again with L", async () => {
   expect(board.subscriptions[0].mode).toBe("roll");
 });
 
+it("keeps the focus where the key was pressed that led back to now", async () => {
+  const { board, user } = mountScope([DISPLACEMENT]);
+  board.frame({ [DISPLACEMENT]: Math.sin }, { head: 1000 });
+  await drawOnce();
+  screen.getByRole("group", { name: /^Plot/ }).focus();
+  await user.keyboard("{ArrowLeft}");
+  (await screen.findByRole("button", { name: "PAST → LIVE" })).focus();
+  await user.keyboard("{Enter}");
+  expect(await screen.findByText("PAUSED")).toHaveFocus();
+});
+
 it("says where there are no data", async () => {
   const { board, pen } = mountScope([DISPLACEMENT]);
   board.frame({ [DISPLACEMENT]: () => Number.NaN }, { head: 400 });
