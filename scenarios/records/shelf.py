@@ -44,7 +44,7 @@ class RecordFolder:
         if record := live.growing(key):
             return record
         for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
-            with suppress(OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
+            with suppress(OSError, ValueError, KeyError, TypeError, BadZipFile):  # absent, or damaged
                 return read(self.path / f"{key}{ending}")
         return None
 
