@@ -308,7 +308,7 @@ def test_an_instrument_plays_with_a_device_that_a_record_calibrated(server: Live
         values = opened(server, device=device["id"], set={"sensor.noise_um": 0.2})["parameters"]
     assert values["device"]["mass_kg"] == device["values"]["device.mass_kg"]
     assert values["plant"]["delay_samples"] == device["values"]["plant.delay_samples"]
-    assert values["sensor"]["noise_um"] == 0.2
+    assert values["sensors"]["recorded"]["noise_um"] == 0.2
     unknown = server.http.post("/api/v1/instruments/scope/benches", json={"device": "0" * 30})
     assert unknown.status_code == 404 and "measured device" in unknown.json()["error"]["message"]
 
