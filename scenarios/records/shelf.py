@@ -74,7 +74,7 @@ class RecordFolder:
         of_servers = [Path(folder) for folder in _in_use[1:] if folder and self._path is None]
         for folder in (self.path, *of_servers):
             for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
-                with suppress(OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
+                with suppress(OSError, ValueError, KeyError, TypeError, BadZipFile):  # absent, or damaged
                     return read(folder / f"{key}{ending}")
         return None
 

@@ -183,7 +183,11 @@ def test_the_scene_of_a_record_follows_it_and_has_no_faults(live: Live, foreign:
     assert live.command(bench["id"], "step", ticks=200).status_code == 200
     assert live.http.get(bench["view3d"]).status_code == 200
     session = live.service.benches.get(bench["id"])
-    pose = device_of(session).pose()
+    device = device_of(session)
+    pose = device.pose()
+    ghosts = {name for name in device.parts() if name.endswith("/outline")}
+    assert pose.reference_um is None and ghosts == {"/estimate/outline"}  # the reference did not drive the record
+    assert "/reference" not in device.picture(pose).nodes
     factor = float(re.search(r"motion ×\s*([0-9.]+)", pose.caption)[1])  # type: ignore[index]
     assert pose.displacement_um == pytest.approx(factor * session.board.value("plant.displacement"), rel=1e-6)
     assert (pose.turn, pose.shift_um, pose.faults) == (0.0, 0.0, ())

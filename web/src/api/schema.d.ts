@@ -3920,6 +3920,12 @@ export interface components {
                 [key: string]: unknown;
             };
             /**
+             * Device
+             * @description Id of a measured device; empty: the scenario's own
+             * @default
+             */
+            device?: string;
+            /**
              * Noise Um
              * @description Noise that filters assume; null: the noise of the scenario
              */
@@ -5971,6 +5977,11 @@ export interface components {
              * @description Whether more samples may come; else the board trips at the end of the record
              */
             is_growing: boolean;
+            /**
+             * Ended
+             * @description Why no more samples come, and where the record is kept; empty: it grows
+             */
+            ended: string;
             /**
              * Names
              * @description Its names of drive and displacement
