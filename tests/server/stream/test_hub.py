@@ -23,7 +23,7 @@ from server.stream.client import Client
 from server.stream.codec import Frame, decode
 from server.stream.hub import EVENT_STATUS_S, PAGES_AT_ONCE, Hub
 from server.stream.panel import Panel
-from server.stream.wire import Subscribe
+from server.stream.wire import Reply, Subscribe
 
 
 class Line:
@@ -244,6 +244,32 @@ async def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
     line.is_free = True
     client.flush()
     assert [frame.head for frame in line.frames()] == [137]
+
+
+@on_loop
+async def test_a_page_that_stopped_for_a_minute_gets_the_newest_status_and_not_a_minute_of_them() -> None:
+    bench = Bench()
+    client, line = bench.page()
+
+    def told(statuses: int) -> list[Any]:
+        for _ in range(statuses):
+            client.offer(status=True)
+        return line.messages()
+
+    assert len(told(300)) == 300  # a script that says nothing hears everything
+    client.took(300)
+    assert len(told(300)) == client_module.STATUSES
+    bench.session.time.slice(120)
+    bench.session.execute(parse({"kind": "pause"}), "test")
+    client.answer(Reply(id="c1", ok=True, tick=120))
+    assert [m["type"] for m in line.messages()] == ["status", "reply"]  # an answer does not wait
+    client.offer(events=True, status=True, frame=True)
+    assert not line.written
+    client.took(10**9)  # its word for a status that was never sent is not taken
+    said = line.messages()
+    kinds = [m["type"] if isinstance(m, dict) else m.head for m in said]
+    assert kinds == ["events", "narration", "status", 120] and said[2]["state"] == "paused"
+    assert len(told(300)) == client_module.STATUSES - 1
 
 
 @on_loop

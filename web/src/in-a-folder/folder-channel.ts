@@ -10,8 +10,8 @@ import { spanBetween, spanEnding } from "./tick-span";
 const WINDOW = 2;
 const STATUS_MS = 200;
 const EVENTS_AT_ONCE = 100;
-/** Messages that the page has not taken yet: beyond, nothing is sent but answers. */
-const MOST_WAITING = 6;
+/** Most statuses that the page has not taken yet: beyond, nothing is sent but answers. */
+const STATUSES = 4;
 
 type Find = (bench: string) => LiveBench | undefined;
 
@@ -31,7 +31,8 @@ export class FolderChannel {
   private readonly post: (data: string | ArrayBuffer) => void;
   private readonly panels = new Map<number, Panel>();
   private readonly revisions = new Map<number, number>();
-  private waiting = 0;
+  private statuses = 0;
+  private taken = 0;
   private frame = 0;
   private acked = 0;
   private cursor: number;
@@ -51,18 +52,14 @@ export class FolderChannel {
     if (message.type === "subscribe") this.subscribe(message);
     else if (message.type === "unsubscribe") this.panels.delete(message.panel);
     else if (message.type === "ack") this.acked = Math.max(this.acked, Math.min(message.frame, this.frame));
+    else if (message.type === "took") this.taken = Math.max(this.taken, Math.min(message.statuses, this.statuses));
     else if (message.type === "resume") this.cursor = Math.min(message.after, this.bench.lastEvent);
     else if (message.type === "command") this.command(message);
   }
 
-  /** Note that the page has taken one more message. */
-  took(): void {
-    this.waiting -= 1;
-  }
-
   /** Send new events, the status, and a picture if the page takes it. A page that lags gets the newest later. */
   flush(now: number): void {
-    if (this.waiting > MOST_WAITING) return;
+    if (this.statuses - this.taken >= STATUSES) return;
     if (this.events() || now - this.told >= STATUS_MS) {
       this.told = now;
       this.status();
@@ -119,6 +116,7 @@ export class FolderChannel {
     const { bench } = this;
     const parameters = bench.edition === this.edition ? null : bench.parameters;
     this.edition = bench.edition;
+    this.statuses += 1;
     this.say({ type: "status", ...bench.status(), parameters, dropped_frames: 0 });
   }
 
@@ -134,16 +132,11 @@ export class FolderChannel {
     if (panels.length === 0) return;
     this.frame += 1;
     const moment = { headTick: file.tick, dtMs: file.document.dt_ms };
-    this.send(encodeFrame({ frame: this.frame, running: time.isRunning, ...moment, panels }));
-  }
-
-  private send(data: string | ArrayBuffer): void {
-    this.waiting += 1;
-    this.post(data);
+    this.post(encodeFrame({ frame: this.frame, running: time.isRunning, ...moment, panels }));
   }
 
   private say(message: components["schemas"]["Hello"] | object): void {
-    this.send(JSON.stringify(message));
+    this.post(JSON.stringify(message));
   }
 }
 
