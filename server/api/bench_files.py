@@ -22,8 +22,8 @@ from server.service import Service
 from server.version import VERSION
 
 MOST_S = 300.0
-"""Processor time of a file: its scenario runs to the end, and each block that this machine has in no file yet is lowered
-for the first time."""
+"""Processor time of a file: its scenario runs to its end, and each block that no file on this machine has had before is
+lowered."""
 ANSWERS: dict[int | str, dict[str, Any]] = {200: {"content": {HTML: {}}}}
 
 router = Router(tags=["scenarios"])

@@ -6,6 +6,7 @@ import type { Scheme } from "../ui/palette";
 import { teachWords } from "./bench-words";
 import { ControllerChoice } from "./controller-choice";
 import { Course, courseAround } from "./course";
+import { DevicePicture } from "./device-picture";
 import { element } from "./dom";
 import { EventList } from "./event-list";
 import { FaultList } from "./fault-list";
@@ -18,7 +19,10 @@ import { PublishedRun } from "./published-run";
 import { QuestionList } from "./question-list";
 import { RunBar } from "./run-bar";
 import { ScopeView } from "./scope-view";
+import { followScheme } from "./scheme";
 import { TimeWindow } from "./time-window";
+import type { TrackDocument } from "./track-document";
+import { TrackView } from "./track-view";
 import { ValueList } from "./value-list";
 
 /** As the page: device time per wall time at first, slower than any eye would need without a pause. */
@@ -32,10 +36,21 @@ const FRAMED = "#frame";
 const textOf = (id: string) => document.getElementById(id)?.textContent ?? "";
 
 async function show(): Promise<void> {
-  const bench = await FileBench.load(
-    await bytesOf(textOf("code")),
-    unpacked<FileDocument>(await bytesOf(textOf("pack"))),
-  );
+  const code = await bytesOf(textOf("code"));
+  const pack = unpacked<FileDocument | TrackDocument>(await bytesOf(textOf("pack")));
+  if ("track" in pack) await showTrack(code, pack);
+  else showBench(await FileBench.load(code, pack));
+}
+
+/** The cases of a track of the benchmark. */
+async function showTrack(code: BufferSource, track: TrackDocument): Promise<void> {
+  const view = new TrackView(await WebAssembly.compile(code), track);
+  document.body.replaceChildren(view.root);
+  followScheme();
+  await view.estimate();
+}
+
+function showBench(bench: FileBench): void {
   const { title, summary, absent, dt_ms: dtMs, version, index, sheet } = bench.document;
   const { diagnosers } = bench;
   teachWords(bench);
@@ -69,8 +84,9 @@ async function show(): Promise<void> {
   const faults = new FaultList(bench, act);
   const values = new ValueList(bench, act);
   const events = new EventList(bench);
+  const device = new DevicePicture(bench);
   const tellAll = () => {
-    for (const part of [bar, controllers, faults, values, events]) part.show();
+    for (const part of [bar, device, controllers, faults, values, events]) part.show();
   };
   const up = index ? element("a", { href: index }, "All exhibits") : "";
   const head = element("header", {}, up, element("h1", {}, title), element("p", { className: "note" }, summary));
@@ -78,20 +94,16 @@ async function show(): Promise<void> {
   const plots = element("div", { className: "plots" }, ...scopes.map(({ root }) => root), lanes?.root ?? "");
   const course = enterCourse(sheet);
   const questions = sheet && new QuestionList(sheet, (percent, isDone) => course?.score(percent, isDone));
-  const lists = [questions, published, controllers, faults, values, events];
+  const lists = [questions, device, published, controllers, faults, values, events];
   const aside = element("aside", {}, ...lists.flatMap((list) => list?.root ?? []));
   document.body.replaceChildren(element("main", {}, head, bar.root, notice, plots, aside, foot));
 
-  const dark = matchMedia("(prefers-color-scheme: dark)");
   let scheme: Scheme = "dark";
-  const dress = () => {
-    scheme = dark.matches ? "dark" : "light";
-    document.documentElement.dataset.mantineColorScheme = scheme;
+  followScheme((now) => {
+    scheme = now;
     for (const scope of scopes) scope.dress(scheme);
     isDirty = true;
-  };
-  dark.addEventListener("change", dress);
-  dress();
+  });
   time.listen(() => {
     isDirty = true;
   });
@@ -116,6 +128,7 @@ async function show(): Promise<void> {
     if (bench.tick !== before || isDirty) {
       for (const scope of scopes) scope.draw(tells);
       lanes?.draw(scheme);
+      device.draw();
       isDirty = false;
     }
     if (tells) {
