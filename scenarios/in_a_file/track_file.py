@@ -1,7 +1,7 @@
 """A track of the benchmark as a page: its public cases, each with its own device, and the published rows.
 
-The cases of a track differ in their numbers alone. A page has the board of one case, and for the others the numbers that
-differ. Diagnosers share most of these numbers, which are kept once.
+The cases of a track differ in their numbers alone. A page has the board of one case, and for the others the numbers
+that differ. Diagnosers share most of these numbers, which are kept once.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from scenarios.in_a_file.pack import packed, text_of
 from scenarios.library import get
 from scenarios.schema import Scenario
 from server.cli.folder import answers
-from server.stream.codec import PanelFrame, decode
+from server.stream.codec import TRIGGERED, PanelFrame, decode
 from tests.scenarios.in_a_file.players import node
 
 
@@ -47,9 +47,22 @@ class Transcript:
             self._subscribe(2, mode="frozen", start_tick=100, end_tick=1900),
             self._subscribe(1, mode="roll", window_ms=20.0),
             {"type": "unsubscribe", "panel": 2},
-            *commands[3:],
+            self._triggered(4, sweep="normal"),
+            self._triggered(5, sweep="single", edge="either", hysteresis=1e-3, position=0.0),
+            self._triggered(6, sweep="auto", edge="leaves", level=-1e6, upper=1e6),
+            self._triggered(7, sweep="normal", edge="falling", level=-1e6),
+            *commands[3:5],
+            {"type": "rearm", "panel": 5},
+            {"type": "rearm", "panel": 9},
+            *commands[5:],
+            self._triggered(8, signal="no.such"),
             self._subscribe(3, mode="roll", window_ms=1.0, signals=["no.such"]),
         ]
+
+    def _triggered(self, panel: int, **trigger: Any) -> dict[str, Any]:
+        full = {"signal": self.signals[0], "edge": "rising", "level": 0.0, "upper": None, "hysteresis": 0.0}
+        full |= {"position": 0.3, "sweep": "auto", **trigger}
+        return self._subscribe(panel, mode="triggered", window_ms=2.0, trigger=full)
 
     def _subscribe(self, panel: int, **fields: Any) -> dict[str, Any]:
         return {"type": "subscribe", "panel": panel, "signals": [*self.signals], "width": 50, **fields}
@@ -178,12 +191,13 @@ def _waiting(status: dict[str, Any]) -> list[tuple[Any, ...]]:
 def test_one_transcript_gives_the_same_messages_and_pictures(live: Any, made: BenchFile, played: Transcript) -> None:
     file = made if played is FIRST else bench_file(played.of)
     by_worker, by_server = _of_worker(file, played.lines, played.of), _of_server(live, played)
-    pictures = 0
+    pictures = triggered = 0
     for line, own, other in zip(played.lines, by_worker, by_server, strict=True):
         shown, expected = _pictures(own), _pictures(other)
         assert shown.keys() == expected.keys(), line
         for panel, picture in expected.items():
             pictures += 1
+            triggered += picture.flags & TRIGGERED > 0
             found = shown[panel]
             assert (found.start, found.end, found.flags, found.revision) == (
                 picture.start,
@@ -191,6 +205,7 @@ def test_one_transcript_gives_the_same_messages_and_pictures(live: Any, made: Be
                 picture.flags,
                 picture.revision,
             ), line
+            np.testing.assert_array_equal(found.trigger, picture.trigger)
             np.testing.assert_array_equal(found.columns, picture.columns)
             np.testing.assert_array_equal(found.latest, picture.latest)
         replies = [[(one["ok"], one.get("tick")) for one in _of_type(said, "reply")] for said in (own, other)]
@@ -202,7 +217,7 @@ def test_one_transcript_gives_the_same_messages_and_pictures(live: Any, made: Be
             mine = _of_type(own, "status")[-1]
             assert {name: mine[name] for name in SAME} == {name: ended[-1][name] for name in SAME}, line
             assert _waiting(mine) == _waiting(ended[-1]), line
-    assert pictures > 8
+    assert pictures > 8 and triggered > 1
 
 
 def test_the_past_is_computed_again_with_the_same_bits_and_another_future_begins_there(made: BenchFile) -> None:
