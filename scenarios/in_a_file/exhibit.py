@@ -1,4 +1,4 @@
-"""An exhibit: a scenario as one live page, with its published run beside it."""
+"""An exhibit: a scenario as one live page with its published run."""
 
 from __future__ import annotations
 

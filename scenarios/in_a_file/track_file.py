@@ -104,7 +104,7 @@ def _numbers(case: Case, board: Board) -> CaseNumbers:
 
 
 def _board(board: Board, steps: list[Any]) -> dict[str, Any]:
-    """Return the document of a board that nobody commands."""
+    """Return the document of a board without commands."""
     writes = {
         "faults": {},
         "present": {},

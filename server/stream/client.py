@@ -129,7 +129,7 @@ class Client:
             self.flush()
 
     def took(self, statuses: int) -> None:
-        """Note how many statuses the client has taken, and send what has waited for it."""
+        """Note how many statuses the client has taken, and send the news that waited for it."""
         self._taken = max(self._taken, min(statuses, self._statuses))
         self.flush()
 
@@ -171,7 +171,7 @@ class Client:
 
     @property
     def _lags(self) -> bool:
-        """Whether it has not taken the last statuses: news wait, and it gets the newest once it goes on."""
+        """Whether it has not taken the last statuses; news wait until it has."""
         return self._taken >= 0 and self._statuses - self._taken >= STATUSES
 
     def _due(self) -> list[bytes]:

@@ -174,7 +174,7 @@ export class BenchArrays {
     for (let at = start; at < stop && ticks.length < most; at += COLUMNS) {
       const end = Math.min(at + COLUMNS, stop);
       this.cut([signal], kept, [at, end], end - at);
-      const samples = { ...this.picture, lengths: [end - at] }; // the least values, which are those of single ticks
+      const samples = { ...this.picture, lengths: [end - at] }; // a column of one tick: its least value is the sample
       this.found.lengths = [Math.min(COLUMNS, most - ticks.length)];
       const [count] = this.room.call("crossings", samples, this.ways, Number(crossing.outside), this.ready, this.found);
       ticks.push(...Array.from(this.found.view.subarray(0, count), (place) => at + Number(place)));

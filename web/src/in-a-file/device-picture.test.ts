@@ -5,7 +5,7 @@ import type { FileBench } from "./file-bench";
 
 const { document: recorded } = await recordedFolder();
 
-/** A bench at rest, with the drawing of the recorded bench or as a gyroscope. */
+/** A bench with these values of its signals. */
 function benchOf(motion: Record<string, number>, plan = recorded.plan) {
   const names = Object.keys(motion);
   return {

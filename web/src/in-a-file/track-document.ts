@@ -9,7 +9,7 @@ interface CaseFault {
   packed: Float64Array;
 }
 
-/** The places at which the cases of a group differ, and for each which of the numbers is there. */
+/** The places at which the cases of a group differ, and for each place the row of its numbers. */
 interface Differences {
   places: BigInt64Array;
   which: BigInt64Array;

@@ -5,7 +5,7 @@ import type { Trigger } from "../stream/wire";
 /** Windows of the past in which the first crossing is sought. */
 const WINDOWS = 51;
 
-/** The picture that a sweep chooses: a crossing, or none; and what the trigger does. */
+/** The crossing that a sweep chooses, if any, and the state of the trigger. */
 export interface Swept {
   tick: number | undefined;
   waiting: boolean;
