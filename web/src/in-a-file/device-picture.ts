@@ -1,7 +1,14 @@
 import { Magnifier } from "../panels/view3d/magnifier";
 import { deviceDrawing } from "../picture/device-drawing";
 import styles from "../picture/device-plan.module.css";
-import { boxAround, GYROSCOPE_BOX, GYROSCOPE_PARTS, isFaulted, type PlanPart, resonatorParts } from "../picture/plan-parts";
+import {
+  boxAround,
+  GYROSCOPE_BOX,
+  GYROSCOPE_PARTS,
+  isFaulted,
+  type PlanPart,
+  resonatorParts,
+} from "../picture/plan-parts";
 import { formatNumber } from "../ui/format";
 import { element, write } from "./dom";
 import type { FileBench } from "./file-bench";

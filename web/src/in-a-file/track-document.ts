@@ -62,7 +62,10 @@ export function caseDocument({ groups, cases }: TrackDocument["track"], number: 
     for (const [i, place] of places.entries()) arrays[name][Number(place)] = numbers[count * Number(which[i]) + own];
   }
   const severities = Object.fromEntries(events.map(({ command }) => [command.fault, command.severity]));
-  const entries = faults.map(({ name, ...fault }) => [name, { ...fault, variants: [variant(fault, severities[name])] }]);
+  const entries = faults.map(({ name, ...fault }) => [
+    name,
+    { ...fault, variants: [variant(fault, severities[name])] },
+  ]);
   return { ...document, arrays, events, faults: Object.fromEntries(entries) };
 }
 

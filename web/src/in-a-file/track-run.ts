@@ -29,7 +29,7 @@ export class TrackRun {
       if (bench.advance(1) === 0) throw new Error(`the board stopped at sample ${tick}: ${bench.trip?.reason}`);
       for (const [i, column] of columns.entries()) {
         const value = signals[column];
-        kept[i][tick] = value === value ? value : NO_NUMBER; // a NaN has many patterns, a digest knows one
+        kept[i][tick] = Number.isNaN(value) ? NO_NUMBER : value; // a NaN has many patterns, a digest knows one
       }
     }
     let first = 0;

@@ -30,9 +30,9 @@ export async function rehearse(
     else if ("data" in message && typeof message.data === "string") {
       const words = JSON.parse(message.data);
       said.push(words);
-      if (words.type === "status") void ask({ channel: CHANNEL, text: JSON.stringify({ type: "took", statuses: ++statuses }) });
-    }
-    else if ("data" in message) {
+      if (words.type === "status")
+        void ask({ channel: CHANNEL, text: JSON.stringify({ type: "took", statuses: ++statuses }) });
+    } else if ("data" in message) {
       const bytes = new Uint8Array(message.data as ArrayBuffer);
       said.push({ frame: btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), "")) });
       const frame = new DataView(bytes.buffer).getUint32(4, true);
