@@ -49,24 +49,22 @@ export interface TrackDocument {
   track: { note: string; samples: number; groups: TrackGroup[]; cases: TrackCase[]; rows: TrackRow[] };
 }
 
-/** A case as the document of a bench. */
-export function caseDocument({ groups, cases }: TrackDocument["track"], number: number): FileDocument {
+/** Write the numbers, faults and events of a case into the document of its group, which its bench begins with. */
+export function writeCase({ groups, cases }: TrackDocument["track"], number: number): FileDocument {
   const { group, faults, events } = cases[number];
   const { document, differs, numbers } = groups[group];
-  const own = cases.slice(0, number).filter((one) => one.group === group).length;
   const count = cases.filter((one) => one.group === group).length;
-  const arrays = { ...document.arrays };
+  const own = cases.slice(0, number).filter((one) => one.group === group).length;
   for (const name of ["p", "s", "w"] as const) {
     const { places, which } = differs[name];
-    arrays[name] = arrays[name].slice();
-    for (const [i, place] of places.entries()) arrays[name][Number(place)] = numbers[count * Number(which[i]) + own];
+    for (const [i, place] of places.entries())
+      document.arrays[name][Number(place)] = numbers[count * Number(which[i]) + own];
   }
   const severities = Object.fromEntries(events.map(({ command }) => [command.fault, command.severity]));
-  const entries = faults.map(({ name, ...fault }) => [
-    name,
-    { ...fault, variants: [variant(fault, severities[name])] },
-  ]);
-  return { ...document, arrays, events, faults: Object.fromEntries(entries) };
+  const entries = faults.map(({ name, ...fault }) => [name, { ...fault, variants: [variant(fault, severities[name])] }]);
+  document.faults = Object.fromEntries(entries);
+  document.events = events;
+  return document;
 }
 
 /** A fault with one severity alone. */

@@ -1,6 +1,6 @@
 import { FileBench } from "./file-bench";
 import { digestOf } from "./sha";
-import { caseDocument, type TrackDocument } from "./track-document";
+import { type TrackDocument, writeCase } from "./track-document";
 
 const NO_NUMBER = Number.NaN;
 
@@ -8,6 +8,8 @@ const NO_NUMBER = Number.NaN;
 export class TrackRun {
   private readonly module: WebAssembly.Module;
   private readonly track: TrackDocument["track"];
+  /** The bench of each group, which begins each case anew. */
+  private readonly benches = new Map<number, FileBench>();
   private readonly digests: Record<string, string[]>;
   done = 0;
 
@@ -20,8 +22,11 @@ export class TrackRun {
   /** Compute the next case, and keep the digest of each diagnoser. */
   async next(): Promise<void> {
     const { group, samples } = this.track.cases[this.done];
-    const bench = await FileBench.load(this.module, caseDocument(this.track, this.done));
-    const { said, document } = this.track.groups[group];
+    const document = writeCase(this.track, this.done);
+    const bench = this.benches.get(group) ?? (await FileBench.load(this.module, document));
+    this.benches.set(group, bench);
+    bench.reset();
+    const { said } = this.track.groups[group];
     const columns = Object.values(said).flat();
     const kept = columns.map(() => new Float64Array(samples));
     const signals = bench.arrays.w.view.subarray(document.reserved);

@@ -19,6 +19,7 @@ export class TrackView {
   constructor(module: WebAssembly.Module, { title, summary, index, version, track }: TrackDocument) {
     this.module = module;
     this.track = track;
+    this.press.disabled = true; // a bench computes the first case at first
     const up = index ? element("a", { href: index }, "All exhibits") : "";
     const words = element("p", { className: "note" }, `${summary} ${track.note}`);
     const foot = `Each diagnoser is given the voltage and the displacement of ${formatCount(track.cases.length, "device")}. The digest of a row is over the bits of its probabilities at every sample. Made by CombBench ${version}.`;
@@ -44,6 +45,7 @@ export class TrackView {
     const began = performance.now();
     await run.next();
     const seconds = ((performance.now() - began) / 1000) * (samples / cases[0].samples);
+    this.press.disabled = false;
     this.tell(
       `${formatCount(cases.length, "case")}, ${formatCount(samples, "sample")}: about ${formatSi(seconds, "s", 1)} in this browser`,
     );
