@@ -62,7 +62,7 @@ export function writeCase({ groups, cases }: TrackDocument["track"], number: num
   }
   const severities = Object.fromEntries(events.map(({ command }) => [command.fault, command.severity]));
   const entries = faults.map(({ name, ...fault }) => [name, { ...fault, variants: [variant(fault, severities[name])] }]);
-  document.faults = Object.fromEntries(entries);
+  document.faults = Object.fromEntries(entries) as unknown as FileDocument["faults"];
   document.events = events;
   return document;
 }
