@@ -49,7 +49,8 @@ def track_file(name: str) -> BenchFile:
     rows = kept().ranked(name)
     blocks = {row.unit: library_of({}).block("diagnose", row.unit, "UNIT") for row in rows}
     sections = {unit: section(block, track) for unit, block in blocks.items()}
-    cases, firsts = [], {}
+    cases: list[CaseNumbers] = []
+    firsts: dict[bytes, Board] = {}
     for seed in seed_list(SEEDS, tuple(tracks())).cases[name]:
         case = track.case(seed)
         board = build(case.scenario(sections, {}), compiled=False)
@@ -92,7 +93,8 @@ def _numbers(case: Case, board: Board) -> CaseNumbers:
     table[:, ADDRESS] = 0
     names = ",".join(one.block.name for one in wiring.instances)
     kind = b"".join([names.encode(), table.tobytes(), wiring.io.tobytes(), repr(board.walk.running).encode()])
-    faults, events = [], []
+    faults: list[dict[str, Any]] = []
+    events: list[dict[str, Any]] = []
     for entry in board.pending.as_asked:
         command = entry.command
         assert isinstance(command, Inject) and entry.tick is not None
