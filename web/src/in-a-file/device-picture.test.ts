@@ -1,15 +1,17 @@
 import { beforeEach, expect, it } from "vitest";
-import { recordedFolder } from "../testing/recorded";
+import { recordedAnswer } from "../testing/recorded";
 import { DevicePicture } from "./device-picture";
 import type { FileBench } from "./file-bench";
+import type { FileDocument } from "./file-document";
 
-const { document: recorded } = await recordedFolder();
+const { evaluation } = await recordedAnswer("design");
+const drawn = { geometry: evaluation.geometry, is_stand_in: true };
 
 /** A bench with these values of its signals. */
-function benchOf(motion: Record<string, number>, plan = recorded.plan) {
+function benchOf(motion: Record<string, number>, plan: FileDocument["plan"] = drawn) {
   const names = Object.keys(motion);
   return {
-    document: { ...recorded, plan },
+    document: { plan, faults: { added_mass: { title: "Added mass", shows: "plate" } } },
     signals: names.map((name) => ({ name, unit: "um", meaning: "" })),
     faults: new Map<string, unknown>(),
     latest: (column: number) => motion[names[column]],
