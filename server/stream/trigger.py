@@ -114,13 +114,10 @@ def ways(edge: Edge, level: float, upper: float, hysteresis: float) -> NDArray[n
     """
     up = (level, math.inf, level - hysteresis, math.inf)
     down = (-math.inf, level, -math.inf, level + hysteresis)
-    found = {
-        "rising": [up],
-        "falling": [down],
-        "either": [up, down],
-        "enters": [(level, upper, level - hysteresis, upper + hysteresis)],
-        "leaves": [(level, upper, level + hysteresis, upper - hysteresis)],
-    }
+    if edge in ("enters", "leaves"):
+        far = hysteresis if edge == "enters" else -hysteresis
+        return np.array([(level, upper, level - far, upper + far)], dtype=np.float32)
+    found = {"rising": [up], "falling": [down], "either": [up, down]}
     return np.array(found[edge], dtype=np.float32)
 
 
