@@ -14,8 +14,9 @@ import numpy as np
 from core.block import FloatArray
 from core.errors import InputError
 
-PROBES = 8
-"""Values at which it is found out whether all numbers are constants or multiples."""
+PROBES, MORE_PROBES = 8, 64
+"""Values at which it is found out whether all numbers are constants or multiples: a few, then many, because a number
+that is rounded twice is equal to a multiple at half of all values."""
 POINTS = 21
 """Of a grid."""
 GOLDEN = 0.6180339887498949
@@ -46,25 +47,31 @@ def dependence(pack: Callable[[float], FloatArray], low: float, high: float, exa
         When the range has not two values at which the numbers can be packed.
     """
     before = pack(exact[0])
-    probes = {value: pack(value) for value in _probes(low, high)}
+    probes = {value: pack(value) for value in _probes(low, high, 0, PROBES)}
     found = np.array([_bits(numbers) != _bits(before) for numbers in probes.values()])
     places = np.flatnonzero(found.any(axis=0))
     scale = _power_of_two(low, high)
     factors = pack(scale)[places] / scale
-    known = {exact[0]: before, **probes}
-    if all(np.array_equal(_bits(value * factors), _bits(numbers[places])) for value, numbers in known.items()):
+
+    def is_multiple(value: float, numbers: FloatArray) -> bool:
+        return np.array_equal(_bits(value * factors), _bits(numbers[places]))
+
+    if all(is_multiple(value, numbers) for value, numbers in ({exact[0]: before} | probes).items()) and all(
+        is_multiple(value, pack(value)) for value in _probes(low, high, PROBES, MORE_PROBES)
+    ):
         return {"places": places, "factors": factors}
-    grid = sorted({*exact, *(round(float(one), 12) for one in np.linspace(low, high, POINTS))} - {0.0})
+    rounded = (min(max(round(float(one), 12), low), high) for one in np.linspace(low, high, POINTS))
+    grid = sorted({*exact, *rounded} - {0.0})
     points = {value: pack(value) for value in grid}
     differ = np.array([_bits(numbers) != _bits(before) for numbers in points.values()])
     places = np.flatnonzero(differ.any(axis=0) | found.any(axis=0))
     return {"places": places, "grid": grid, "numbers": np.array([points[value][places] for value in grid])}
 
 
-def _probes(low: float, high: float) -> list[float]:
+def _probes(low: float, high: float, first: int, end: int) -> list[float]:
     if not low < high:
         raise InputError(f"no values between {low} and {high}")
-    return [low + (high - low) * ((k * GOLDEN) % 1.0) for k in range(1, PROBES + 1)]
+    return [low + (high - low) * ((k * GOLDEN) % 1.0) for k in range(first + 1, end + 1)]
 
 
 def _power_of_two(low: float, high: float) -> float:

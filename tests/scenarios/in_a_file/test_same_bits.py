@@ -83,6 +83,7 @@ def test_many_random_commands_give_the_bits_of_a_native_board(name: str, player:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(1800)
 def test_every_scenario_of_the_library_gives_its_published_digest():
     chosen = [one for one in library() if not refusal(one)]
     assert len(chosen) > 110
