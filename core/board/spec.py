@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from operator import attrgetter
 from typing import Any, Literal, cast
@@ -197,10 +197,9 @@ class Spec:
         found = self._contexts.get((every, axis))
         if found is None:
             if self._sown is not None:
-                found = object.__new__(Context)
-                vars(found).update(vars(self._sown.context(every, axis)), seed=self.seed)
+                found = self._sown.context(every, axis).with_facts(seed=self.seed)
             else:
-                found = replace(self.context(every), axis=axis) if axis else self._context(every)
+                found = self.context(every).with_facts(axis=axis) if axis else self._context(every)
             self._contexts[every, axis] = found
         return found
 
@@ -219,7 +218,7 @@ class Spec:
         # the noise of a sample of the sensor, however often the block that asks runs
         block: Any = sensor.block
         own = block.noise_um(sensor.params, known if sensor.every == every else self._known(sensor.every))
-        return replace(known, sensor_noise_um=float(own), sensor_every=sensor.every)
+        return known.with_facts(sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
         nominal, drive = self.nominal, self.drive.params

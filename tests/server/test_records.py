@@ -16,11 +16,11 @@ import pytest
 
 from core.measured_record import MeasuredRecord
 from scenarios.library import get
+from scenarios.records import shelf
 from scenarios.records.bench import on_record
-from scenarios.records.shelf import FOLDER
+from scenarios.records.shelf import FOLDER, RecordFolder
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
-from server.store import measured_records
 from server.view3d.viewers import device_of
 from tests.scenarios.records.foreign import DT, draw
 from tests.server.classroom.group import Somebody, join, open_class
@@ -318,18 +318,22 @@ def test_records_outlive_the_server_and_uploads_under_way_do_not(tmp_path: Path)
         assert second.http.post(f"/api/v1/benches/{bench}/reopen").status_code == 200
 
 
-def test_of_two_servers_in_a_process_the_newest_that_runs_finds_its_records(
+def test_each_of_two_servers_in_a_process_finds_its_records_whichever_ends_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measured_records, "_IN_USE", [])
+    monkeypatch.setattr(shelf, "_in_use", [])
     monkeypatch.setenv(FOLDER, "before")
-    first, second = (
-        measured_records.MeasuredRecords(None, tmp_path / name).found_by_benches()  # type: ignore[arg-type]
-        for name in ("first", "second")
-    )
+    folders = [tmp_path / name for name in ("first", "second")]
+    few = [MeasuredRecord(50.0, np.arange(5.0), np.full(5, float(k))) for k in range(2)]
+    keys = [RecordFolder(folder).keep(one) for folder, one in zip(folders, few, strict=True)]
+    first, second = map(shelf.found_by_benches, folders)
     first.__enter__()
     second.__enter__()
+    assert all(RecordFolder().get(key) for key in keys)
+    monkeypatch.setenv(FOLDER, "of another test")
+    assert all(RecordFolder().get(key) for key in keys)
     first.__exit__(None, None, None)
-    assert os.environ[FOLDER] == str(tmp_path / "second")
+    assert os.environ[FOLDER] == str(folders[1])
+    assert RecordFolder().get(keys[0]) is None and RecordFolder().get(keys[1])
     second.__exit__(None, None, None)
     assert os.environ[FOLDER] == "before"

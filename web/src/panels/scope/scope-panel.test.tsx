@@ -91,7 +91,7 @@ it("shows the past when a key pans, and live again with L", async () => {
   const { board, user } = mountScope([DISPLACEMENT]);
   board.frame({ [DISPLACEMENT]: Math.sin }, { head: 1000 });
   await drawOnce();
-  expect(screen.getByRole("button", { name: "PAUSED" })).toBeVisible();
+  expect(screen.getByText("PAUSED")).toBeVisible();
   screen.getByRole("group", { name: /^Plot/ }).focus();
   await user.keyboard("{ArrowLeft}");
   await waitFor(() => expect(board.subscriptions[0]).toMatchObject({ mode: "frozen", start_tick: 550, end_tick: 950 }));
