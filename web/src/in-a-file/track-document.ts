@@ -61,7 +61,10 @@ export function writeCase({ groups, cases }: TrackDocument["track"], number: num
       document.arrays[name][Number(place)] = numbers[count * Number(which[i]) + own];
   }
   const severities = Object.fromEntries(events.map(({ command }) => [command.fault, command.severity]));
-  const entries = faults.map(({ name, ...fault }) => [name, { ...fault, variants: [variant(fault, severities[name])] }]);
+  const entries = faults.map(({ name, ...fault }) => [
+    name,
+    { ...fault, variants: [variant(fault, severities[name])] },
+  ]);
   document.faults = Object.fromEntries(entries) as unknown as FileDocument["faults"];
   document.events = events;
   return document;

@@ -75,10 +75,11 @@ export class FolderChannel {
     const signals = subscription.signals.map((name) => names.indexOf(name));
     const { behind = [] } = subscription;
     const sweep = this.sweepOf(subscription);
+    const trigger = subscription.mode === "triggered" ? subscription.trigger : undefined;
     const unknown = subscription.signals[signals.indexOf(-1)];
     const gone = behind.findIndex(({ bench }) => !this.find(bench));
     if (unknown !== undefined) this.refuse(`there is no signal ${unknown}`, "signals");
-    else if (sweep === null) this.refuse(`there is no signal ${subscription.trigger?.signal}`, "trigger.signal");
+    else if (sweep === null) this.refuse(`there is no signal ${trigger?.signal}`, "trigger.signal");
     else if (gone >= 0) this.refuse(`there is no bench ${behind[gone].bench}`, `behind.${gone}`);
     else {
       const revision = (this.revisions.get(panel) ?? 0) + 1;
@@ -142,7 +143,7 @@ export class FolderChannel {
     const { file, time } = this.bench;
     const panels: PanelFrame[] = [];
     for (const [number, panel] of this.panels) {
-      const shown = pictureOf(file, panel, this.find);
+      const shown = pictureOf(this.bench, panel, this.find);
       if (shown.key === panel.sent) continue;
       panel.sent = shown.key;
       panels.push({ ...shown.draw(), panel: number, revision: panel.revision });
@@ -174,7 +175,7 @@ function spanOf(file: FileBench, { subscription, sweep }: Panel, swept: Swept | 
 }
 
 /** The picture of a panel now: pictures differ if their keys do. */
-function pictureOf(file: FileBench, panel: Panel, find: Find) {
+function pictureOf({ file, history }: LiveBench, panel: Panel, find: Find) {
   const { subscription, signals, behind, sweep } = panel;
   const isFrozen = subscription.mode === "frozen";
   const swept = sweep?.update();
@@ -206,7 +207,7 @@ function pictureOf(file: FileBench, panel: Panel, find: Find) {
   const head = isFrozen ? Math.min(Math.max(file.tick, start), end) : (swept?.tick ?? (isEmpty ? 0 : file.tick));
   const behindKey = others.map((one) => `${one.file?.tick} ${one.file?.oldest}`);
   const flags = swept && `${swept.tick !== undefined} ${swept.waiting} ${swept.triggered}`;
-  return { key: [head, flags, file.oldest, ...behindKey].join(), draw };
+  return { key: [history, head, flags, file.oldest, ...behindKey].join(), draw };
 }
 
 function joined(parts: readonly Float32Array[]): Float32Array {
