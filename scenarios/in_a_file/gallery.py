@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from scenarios.in_a_file.bench_file import BenchFile, refusal
+from scenarios.in_a_file.bench_file import BenchFile, bench_file, refusal
 from scenarios.in_a_file.exhibit import exhibit
 from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage, html_of
 from scenarios.in_a_file.track_file import track_file
@@ -88,7 +88,7 @@ def write_gallery(
         if reason := refusal(scenario):
             refused.append((reason, scenario.id))
             continue
-        made = exhibit(scenario, None, version, index=INDEX_PAGE)
+        made = exhibit(scenario, bench_file(scenario), None, version, index=INDEX_PAGE)
         write_page(scenario.id, made.text)
         pages.append((scenario, made.record))
     files = {page_of(name): track_file(name) for name in tracks}

@@ -132,5 +132,5 @@ def differences(cases: list[CaseNumbers]) -> dict[str, Any]:
     parts = np.split(which.ravel(), np.cumsum([len(places[name]) for name in NUMBERS])[:-1])
     return {
         "differs": {name: {"places": places[name], "which": part} for name, part in zip(NUMBERS, parts, strict=True)},
-        "numbers": np.ascontiguousarray(unlike).view(np.float64),
+        "numbers": np.ascontiguousarray(unlike.T).view(np.float64),
     }

@@ -7,6 +7,7 @@ from typing import Any
 from fastapi import Response
 
 from core.own.admission import kept
+from scenarios.in_a_file.bench_file import bench_file
 from scenarios.in_a_file.exhibit import exhibit
 from scenarios.in_a_file.html import BuiltPage
 from scenarios.library import get, ids
@@ -60,4 +61,4 @@ def html_file(document: dict[str, Any]) -> str:
     """
     with kept():
         scenario: Scenario = read_scenario(document)
-    return exhibit(scenario, BuiltPage.of(DIST / "in-a-file"), VERSION).text
+    return exhibit(scenario, bench_file(scenario), BuiltPage.of(DIST / "in-a-file"), VERSION).text

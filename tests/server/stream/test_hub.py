@@ -263,6 +263,7 @@ async def test_a_page_that_stopped_for_a_minute_gets_the_newest_status_and_not_a
     bench.session.execute(parse({"kind": "pause"}), "test")
     client.answer(Reply(id="c1", ok=True, tick=120))
     assert [m["type"] for m in line.messages()] == ["status", "reply"]  # an answer does not wait
+    client.cuts.refresh()
     client.offer(events=True, status=True, frame=True)
     assert not line.written
     client.took(10**9)  # its word for a status that was never sent is not taken
