@@ -1,4 +1,4 @@
-import { beforeEach, expect, it } from "vitest";
+import { afterEach, beforeEach, expect, it } from "vitest";
 import { recordedAnswer } from "../testing/recorded";
 import { DevicePicture } from "./device-picture";
 import type { FileBench } from "./file-bench";
@@ -26,7 +26,9 @@ const show = (bench: object) => {
 const moved = () => [...document.querySelectorAll("path")].flatMap((path) => path.getAttribute("transform") ?? []);
 const red = () => document.querySelectorAll("[data-fault=true]").length;
 
-beforeEach(() => document.body.replaceChildren());
+const clear = () => document.body.replaceChildren();
+beforeEach(clear);
+afterEach(clear);
 
 it("moves with the newest tick, a round number of times larger than life", () => {
   const motion = { "plant.displacement": 2 };
