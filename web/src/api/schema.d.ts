@@ -10271,6 +10271,19 @@ export interface components {
             behind?: components["schemas"]["BehindSpec"][];
         };
         /**
+         * Took
+         * @description The client has taken so many statuses of this stream; from then on the server sends a few more at most.
+         */
+        Took: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "took";
+            /** Statuses */
+            statuses: number;
+        };
+        /**
          * TriggerSpec
          * @description The trigger of a panel; it sets the moment of the picture.
          */
@@ -10331,7 +10344,7 @@ export interface components {
             panel: number;
         };
         /** ClientMessage */
-        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
+        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Took"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
         /**
          * CaptureList
          * @description The captures kept of the trigger of a panel, oldest first: sent when they have changed.
@@ -17350,6 +17363,7 @@ export type Pong = components['schemas']['Pong'];
 export type Rearm = components['schemas']['Rearm'];
 export type Resume = components['schemas']['Resume'];
 export type Subscribe = components['schemas']['Subscribe'];
+export type Took = components['schemas']['Took'];
 export type TriggerSpec = components['schemas']['TriggerSpec'];
 export type Unsubscribe = components['schemas']['Unsubscribe'];
 export type ClientMessage = components['schemas']['ClientMessage'];
