@@ -163,7 +163,8 @@ class TrackingTask:
         self._seen[place] = seen[0]
         if self._pictures:
             self._pictures[place].clear()
-        return self._seen[place].copy()
+        begun: Observation = self._seen[place].copy()
+        return begun
 
     def step(self, places: IntArray, actions: NDArray[Any]) -> StepOutcome:
         """Hold a voltage at each of some boards for a step."""
