@@ -90,7 +90,8 @@ class Doors:
             found = answer.json()["error"]
             assert found["message"] and "\n" not in found["message"]
             return found
-        return answer.json() if "json" in answer.headers.get("content-type", "") else answer.content
+        is_json = answer.content and "json" in answer.headers.get("content-type", "")
+        return answer.json() if is_json else answer.content
 
 
 @pytest.mark.parametrize("bench", KINDS, indirect=True)
