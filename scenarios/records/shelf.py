@@ -28,7 +28,7 @@ _in_use: list[str | None] = []
 
 @contextmanager
 def found_by_benches(folder: Path) -> Iterator[None]:
-    """Let the benches of this process find the records of a server, and those of the processes that it starts.
+    """Let the benches of this process find the records of a server; so do the processes that it starts.
 
     Of several servers in one process each finds its own; a process finds the records of the newest that runs.
     """
