@@ -34,7 +34,9 @@ it("says how long the record is, and that nothing is scored without labels", asy
 });
 
 it("says of a live record whether its instrument sends, and why it has ended", () => {
-  const instrument = { source: "scope", is_connected: true, is_growing: true, ended: "" } as NonNullable<typeof bench.instrument>;
+  const instrument = { source: "scope", is_connected: true, is_growing: true, ended: "" } as NonNullable<
+    typeof bench.instrument
+  >;
   const board = connect({ ...played([]), time_scale: null, instrument });
   mount(<RecordLine />);
   const line = screen.getByRole("region", { name: "Record" });
