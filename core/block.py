@@ -177,7 +177,7 @@ class Context:
     banks: Mapping[str, Mapping[str, Oscillator]] = field(default_factory=dict)
 
     def with_facts(self, **facts: Any) -> Context:
-        """Return these facts but for some."""
+        """Return these facts with some changed."""
         found = object.__new__(Context)
         vars(found).update(vars(self), **facts)
         return found

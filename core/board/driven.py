@@ -119,9 +119,8 @@ class DrivenBoards:
         self.counts, self.ticks = (np.zeros(count, dtype=np.int64) for _ in range(2))
         self.gone, self._has_begun = (np.zeros(count, dtype=np.bool_) for _ in range(2))
         self._ways, self._moments = (np.zeros(count, dtype=np.int64) for _ in range(2))
-        self._running: list[tuple[int, ...]] = []
-        self._number_of: dict[tuple[int, ...], int] = {}
         self._runs = np.zeros(count, dtype=np.int64)
+        self._known_runs: dict[tuple[int, ...], int] = {}
         self._known_ways: dict[Any, int] = {}
         self._tables: dict[Any, tuple[IntArray, int]] = {}
         self._boards = [self._board(place, pattern.board.spec, PendingQueue()) for place in range(count)]
@@ -313,10 +312,7 @@ class DrivenBoards:
         wiring = board.wiring
         if self._ways[place] < 0 or wiring.is_changed:
             running = tuple(board.rest())
-            if running not in self._number_of:
-                self._number_of[running] = len(self._running)
-                self._running.append(running)
-            self._runs[place] = self._number_of[running]
+            self._runs[place] = self._known_runs.setdefault(running, len(self._known_runs))
             needed = tuple(row for row in running if row not in self._optional)
             every, choices = wiring.table[:, program.EVERY], wiring.p[self._pattern.choices]
             way = needed, wiring.io.tobytes(), every.tobytes(), choices.tobytes()
@@ -331,7 +327,7 @@ class DrivenBoards:
         way = int(self._ways[parts[0, 0]])
         key = width, way, frozenset(self._runs[parts].ravel().tolist())
         if key not in self._tables:
-            rows = sorted({row for number in key[2] for row in self._running[number]})
+            rows = sorted({row for running, number in self._known_runs.items() if number in key[2] for row in running})
             table = self._boards[parts[0, 0]].wiring.table[rows]
             first = self._pattern.board.wiring
             table[:, program.ADDRESS] = [steps.address(first, row, width) for row in rows]

@@ -33,7 +33,7 @@ DRAWN = ("model.displacement", "plant.displacement", "drive.voltage")
 """Signals of a picture."""
 MOST_SKIP = 10_000
 NO_RANGES: Ranges = {}
-ORIGIN, ONCE = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
+FIRST, ONCE = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
 """The place of a board by itself, and its single tick."""
 RENDER_MODES = ("rgb_array",)
 
@@ -159,7 +159,7 @@ class TrackingTask:
         self.episodes[place], self._steps[place], self._before[place] = episode, 0, row[self._applied]
         self._values[place] = 0.0
         seen = np.zeros((1, len(OBSERVED)))
-        observe(row.reshape(1, 1, -1, 1), ORIGIN, ONCE, self._scales, self._high, seen)
+        observe(row.reshape(1, 1, -1, 1), FIRST, ONCE, self._scales, self._high, seen)
         self._seen[place] = seen[0]
         if self._pictures:
             self._pictures[place].clear()

@@ -53,7 +53,7 @@ def test_every_controller_has_its_price():
             costs |= block_costs(board, name)
     for bench in (ONE, get("ch6-mode-matching").spec):
         board = running(bench)
-        alive = [name for name in ALIVE if name in board.wiring.blocks]
+        alive = [one.key for one in board.wiring.instances if one.key in ALIVE]
         for name in board.spec.controllers:
             costs |= block_costs(board, name, alive=alive)
     assert set(costs) == set(registry.blocks("control"))
