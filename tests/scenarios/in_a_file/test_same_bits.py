@@ -109,6 +109,7 @@ def test_one_packed_number_changed_gives_another_digest():
     assert plain["digest"] == run(with_values(get(LIGHT), {"samples": 200})).digest != changed["digest"]
 
 
+@pytest.mark.long
 def test_a_twin_that_rests_has_no_numbers_and_the_past_of_all_boards_is_the_native_past():
     bout = Bout.of(with_values(get("ch3-stvsc-pull-in"), {"diagnosers": {}}))
     board = Board.restore(bout.start)
