@@ -176,6 +176,12 @@ class Context:
     sensors: Mapping[str, BlockParams] = field(default_factory=dict)
     banks: Mapping[str, Mapping[str, Oscillator]] = field(default_factory=dict)
 
+    def with_facts(self, **facts: Any) -> Context:
+        """Return these facts with some changed."""
+        found = object.__new__(Context)
+        vars(found).update(vars(self), **facts)
+        return found
+
     @property
     def assumed_noise_um(self) -> float:
         """Sensor noise that filters assume: the noise of the sensor, at least a thousandth of a micrometre."""

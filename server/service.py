@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from core.compile.code import borrowed
 from scenarios.arrow import pa
+from scenarios.records.shelf import found_by_benches
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints
@@ -178,7 +179,7 @@ class Service:
     @contextlib.asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
         """Start everything, and stop it in the opposite order."""
-        with self.measured_records.found_by_benches():
+        with found_by_benches(self.measured_records.folder):
             async with self._running():
                 yield
 

@@ -119,7 +119,8 @@ class DrivenBoards:
         self.counts, self.ticks = (np.zeros(count, dtype=np.int64) for _ in range(2))
         self.gone, self._has_begun = (np.zeros(count, dtype=np.bool_) for _ in range(2))
         self._ways, self._moments = (np.zeros(count, dtype=np.int64) for _ in range(2))
-        self._running: list[tuple[int, ...]] = [()] * count
+        self._runs = np.zeros(count, dtype=np.int64)
+        self._known_runs: dict[tuple[int, ...], int] = {}
         self._known_ways: dict[Any, int] = {}
         self._tables: dict[Any, tuple[IntArray, int]] = {}
         self._boards = [self._board(place, pattern.board.spec, PendingQueue()) for place in range(count)]
@@ -137,9 +138,14 @@ class DrivenBoards:
 
     @property
     def rows(self) -> FloatArray:
-        """The signals kept at the ticks of the last frame, shape (ticks, signals, boards)."""
-        rows = self._all.rows.transpose(1, 2, 0, 3)
-        return rows.reshape(*rows.shape[:2], -1)[:, :, : len(self._boards)]
+        """The signals kept at the ticks of the last frame, shape (groups, ticks, signals, boards of a group)."""
+        return self._all.rows
+
+    def kept(self, places: IntArray) -> FloatArray:
+        """Return the signals kept of some boards, shape (ticks, signals, boards)."""
+        groups, columns = self._place_of
+        found: FloatArray = self._all.rows[groups[places], :, :, columns[places]].transpose(1, 2, 0)
+        return found
 
     def begin(self, place: int, spec: Spec, pending: PendingQueue) -> FloatArray:
         """Put a new board at a place, begin its first tick, and return the signals kept.
@@ -305,8 +311,9 @@ class DrivenBoards:
         board.use()
         wiring = board.wiring
         if self._ways[place] < 0 or wiring.is_changed:
-            self._running[place] = tuple(board.rest())
-            needed = tuple(row for row in self._running[place] if row not in self._optional)
+            running = tuple(board.rest())
+            self._runs[place] = self._known_runs.setdefault(running, len(self._known_runs))
+            needed = tuple(row for row in running if row not in self._optional)
             every, choices = wiring.table[:, program.EVERY], wiring.p[self._pattern.choices]
             way = needed, wiring.io.tobytes(), every.tobytes(), choices.tobytes()
             self._ways[place] = self._known_ways.setdefault(way, len(self._known_ways))
@@ -318,9 +325,9 @@ class DrivenBoards:
     def _table(self, width: int, parts: IntArray) -> tuple[IntArray, int]:
         """Return the rows that run on any of some boards; a fault without severity changes no bit of the others."""
         way = int(self._ways[parts[0, 0]])
-        key = width, way, frozenset([self._running[place] for place in parts.ravel().tolist()])
+        key = width, way, frozenset(self._runs[parts].ravel().tolist())
         if key not in self._tables:
-            rows = sorted({row for own in key[2] for row in own})
+            rows = sorted({row for running, number in self._known_runs.items() if number in key[2] for row in running})
             table = self._boards[parts[0, 0]].wiring.table[rows]
             first = self._pattern.board.wiring
             table[:, program.ADDRESS] = [steps.address(first, row, width) for row in rows]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from operator import attrgetter
 from typing import Any, Literal, cast
@@ -21,7 +21,6 @@ from core.loop.drive import Drive
 from core.loop.environment import Environment
 from core.loop.model import Model
 from core.measured_record import PlayedRecord, record_of
-from core.plant.gyroscope_pair import GyroscopePair
 from core.plant.record import RecordPlant
 from core.table import Table
 
@@ -142,8 +141,8 @@ class Spec:
     @cached_property
     def partner(self) -> Oscillator | None:
         """The second device of a pair, nominal."""
-        params = self.plant.params
-        return params.partner.oscillator() if isinstance(params, GyroscopePair.Params) else None
+        partner = getattr(self.plant.params, "partner", None)
+        return partner.oscillator() if isinstance(partner, Device) else None
 
     @cached_property
     def banks(self) -> dict[str, dict[str, Oscillator]]:
@@ -204,10 +203,9 @@ class Spec:
         found = self._contexts.get((every, axis))
         if found is None:
             if self._sown is not None:
-                found = object.__new__(Context)
-                vars(found).update(vars(self._sown.context(every, axis)), seed=self.seed)
+                found = self._sown.context(every, axis).with_facts(seed=self.seed)
             else:
-                found = replace(self.context(every), axis=axis) if axis else self._context(every)
+                found = self.context(every).with_facts(axis=axis) if axis else self._context(every)
             self._contexts[every, axis] = found
         return found
 
@@ -226,7 +224,7 @@ class Spec:
         # the noise of a sample of the sensor, however often the block that asks runs
         block: Any = sensor.block
         own = block.noise_um(sensor.params, known if sensor.every == every else self._known(sensor.every))
-        return replace(known, sensor_noise_um=float(own), sensor_every=sensor.every)
+        return known.with_facts(sensor_noise_um=float(own), sensor_every=sensor.every)
 
     def _known(self, every: int) -> Context:
         nominal, drive = self.nominal, self.drive.params

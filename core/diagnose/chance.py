@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 DIGITS = 12
 """The last digits of a library's functions depend on the machine; these do not."""
@@ -10,6 +11,7 @@ LAST_STEP = 1e-8
 """Newton's error is about the square of this step, relative to the value."""
 
 
+@lru_cache(maxsize=256)
 def chi_square(freedom: int, chance: float) -> float:
     """Return the value that a chi-square variable with these degrees of freedom, 2 or more, exceeds with a probability.
 

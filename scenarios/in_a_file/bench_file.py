@@ -10,7 +10,9 @@ from core.board.commands import SetValues, Switch
 from core.board.condition import parse_condition
 from core.board.ensemble import Ensemble, shown
 from core.board.history import History
+from core.board.spec import Spec
 from core.compile.numbers import Unsupported
+from core.device.catalogue import device
 from core.errors import InputError
 from core.wasm.module import module_of
 from scenarios.in_a_file.board_file import board_document
@@ -24,6 +26,8 @@ from scenarios.schema import Scenario
 HISTORY_MB = 48.0
 MOST_TICKS = 400_000
 """Of the past: the last 4 s at 100 kHz, where the memory has room for so many."""
+STAND_IN = "lcr-350"
+"""The device that is drawn where a device has no drawing."""
 ABSENT = "The narrator, classes, campaigns, recordings, the 3D view and hidden faults need the server."
 
 
@@ -90,6 +94,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
         "summary": scenario.head.summary,
         "absent": ABSENT,
         "seed": board.spec.frame.seed,
+        "plan": _plan(board.spec),
         **found.pop(MAIN),
         "events": _events(board, faults[MAIN]),
         "done": [[tick, described(command, faults[MAIN])] for tick, command in board.done],
@@ -99,6 +104,13 @@ def bench_file(scenario: Scenario) -> BenchFile:
         },
     }
     return BenchFile(code, document, writes.left_out)
+
+
+def _plan(spec: Spec) -> dict[str, Any]:
+    """Return the numbers of the drawing of the device, or of the device that is drawn in its place."""
+    own = spec.device.geometry
+    shown = None if spec.axes else own or device({"id": STAND_IN}).geometry
+    return {"geometry": shown and shown.model_dump(), "is_stand_in": not spec.axes and own is None}
 
 
 def _ticks(boards: list[Board]) -> int:

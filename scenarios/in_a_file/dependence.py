@@ -6,7 +6,7 @@ freely. Where any other number follows the value, the value has a grid, and the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,9 @@ from core.block import FloatArray
 from core.errors import InputError
 
 PROBES = 8
-"""Values at which it is found out whether all numbers are constants or multiples."""
+"""Values at which it is found out which numbers follow, and whether they may be multiples."""
+CONFIRMED = 120
+"""More values at which multiples are multiples: a product rounded twice differs from it at a seventh of all values."""
 POINTS = 21
 """Of a grid."""
 GOLDEN = 0.6180339887498949
@@ -46,25 +48,31 @@ def dependence(pack: Callable[[float], FloatArray], low: float, high: float, exa
         When the range has not two values at which the numbers can be packed.
     """
     before = pack(exact[0])
-    probes = {value: pack(value) for value in _probes(low, high)}
+    probes = {value: pack(value) for value in _probes(low, high, range(1, PROBES + 1))}
     found = np.array([_bits(numbers) != _bits(before) for numbers in probes.values()])
     places = np.flatnonzero(found.any(axis=0))
     scale = _power_of_two(low, high)
     factors = pack(scale)[places] / scale
+
+    def is_multiple(value: float, numbers: FloatArray) -> bool:
+        return np.array_equal(_bits(value * factors), _bits(numbers[places]))
+
+    more = _probes(low, high, range(PROBES + 1, PROBES + CONFIRMED + 1))
     known = {exact[0]: before, **probes}
-    if all(np.array_equal(_bits(value * factors), _bits(numbers[places])) for value, numbers in known.items()):
+    if all(is_multiple(*one) for one in known.items()) and all(is_multiple(value, pack(value)) for value in more):
         return {"places": places, "factors": factors}
-    grid = sorted({*exact, *(round(float(one), 12) for one in np.linspace(low, high, POINTS))} - {0.0})
+    evenly = (min(max(round(float(one), 12), low), high) for one in np.linspace(low, high, POINTS))
+    grid = sorted({*exact, *evenly} - {0.0})
     points = {value: pack(value) for value in grid}
     differ = np.array([_bits(numbers) != _bits(before) for numbers in points.values()])
     places = np.flatnonzero(differ.any(axis=0) | found.any(axis=0))
     return {"places": places, "grid": grid, "numbers": np.array([points[value][places] for value in grid])}
 
 
-def _probes(low: float, high: float) -> list[float]:
+def _probes(low: float, high: float, numbers: Iterable[int]) -> list[float]:
     if not low < high:
         raise InputError(f"no values between {low} and {high}")
-    return [low + (high - low) * ((k * GOLDEN) % 1.0) for k in range(1, PROBES + 1)]
+    return [low + (high - low) * ((k * GOLDEN) % 1.0) for k in numbers]
 
 
 def _power_of_two(low: float, high: float) -> float:

@@ -10,8 +10,8 @@ from typing import Any
 
 from core.errors import InputError
 from scenarios.in_a_file.bench_file import bench_file, refusal
-from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage, html_of
-from scenarios.in_a_file.published import published
+from scenarios.in_a_file.exhibit import exhibit
+from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage
 from scenarios.schema import Scenario
 
 HEADINGS = {"app": "Appendices", "ch1": "1 Devices", "ch2": "2 Sensing", "ch3": "3 Adaptive control",
@@ -74,11 +74,10 @@ def write_gallery(
         if reason := refusal(scenario):
             refused.append((reason, scenario.id))
             continue
-        record = published(scenario)
-        text = html_of(bench_file(scenario), None, version, published=record, index="index.html")
-        _write(folder / f"{scenario.id}.html", text)
-        say(f"{scenario.id}.html, {len(text.encode()) / 1e3:.0f} kB")
-        pages.append((scenario, record))
+        made = exhibit(scenario, bench_file(scenario), None, version, index="index.html")
+        _write(folder / f"{scenario.id}.html", made.text)
+        say(f"{scenario.id}.html, {len(made.text.encode()) / 1e3:.0f} kB")
+        pages.append((scenario, made.record))
     if not pages:
         raise InputError("none of these scenarios can be a bench in a file", "--gallery")
     _write(folder / SCRIPT, built.script)

@@ -1,10 +1,10 @@
-"""The kernels of a bench in a file: the loop with history and fold, columns of a picture, folds of blocks."""
+"""The kernels of a bench in a file: loop with history and fold, columns of a picture, crossings, folds of blocks."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from core.board import fold, history, kept
+from core.board import crossing, fold, history, kept
 from core.wasm.module import OfferedKernel
 
 WHOLE, NUMBER = "int64", "float64"
@@ -26,6 +26,7 @@ KERNELS = {
         ),
     ),
     "cut": OfferedKernel(_plain(history.cut), (*RINGS, PLACES, PLACES, WHOLE, WHOLE, WHOLE, WHOLE, ("float32", 3))),
+    "crossings": OfferedKernel(_plain(crossing.crossings), (("float32", 1), ("float32", 2), WHOLE, PLACES, PLACES)),
     "join": OfferedKernel(_plain(fold.join), (FOLDS, PLACES, FOLDS)),
 }
 """By the names that the page calls them by."""

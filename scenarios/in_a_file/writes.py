@@ -91,6 +91,7 @@ class Writes:
                 **board.fault(name, plain),
                 "title": block.title,
                 "group": block.group,
+                "shows": block.shows or None,
                 "unit": card.unit,
                 "suggested": suggested,
                 "minimum": card.minimum,

@@ -73,18 +73,16 @@ def sweep_sine(
     Raises
     ------
     InputError
-        When the plant has axes, the board trips, the record does not look like a resonator, or the sweep would take too
-        long.
+        When the plant has axes or is a record, the board trips, the measurement does not look like a resonator, or the
+        sweep would take too long.
     """
     if board.spec.axes:
         moves = f"{board.spec.plant.block.name} moves along {', '.join(board.spec.axes)}"
         raise InputError(f"a swept sine is for one displacement; {moves}", "plant.model")
+    if board.spec.record is not None:
+        raise InputError("a record cannot be driven by a sine", "plant.model", "calibrate it to find its device")
     copy = Board.restore(board.checkpoint())
     copy.pending.clear()
-    if copy.spec.axes:
-        raise InputError(
-            f"the plant moves along {', '.join(copy.spec.axes)}; a swept sine needs one displacement", "plant.model"
-        )
     device = believed or copy.spec.device
     nominal = figures(**device.resolved)
     if device.signed_force_n_per_v == 0.0:

@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from core.board.lane import Lane
 from scenarios.outside.scope_picture import Picture
-from scenarios.outside.tracking import RENDER_MODES, Observation, TaskOptions, TrackingTask
+from scenarios.outside.tracking import FIRST, RENDER_MODES, Observation, TaskOptions, TrackingTask
 from scenarios.schema import Scenario
 
 ID = "CombBench/Tracking-v1"
-FIRST = np.zeros(1, dtype=np.int64)
-"""The place of the only board."""
 
 
 class Tracking(gymnasium.Env[Observation, NDArray[Any]]):

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from core.block import FloatArray, IntArray
-from core.elementary import exp
 from core.errors import unknown
-from core.kernel import kernel
 
 
 class Reward(NamedTuple):
@@ -50,40 +47,3 @@ def reward_of(given: str | Reward) -> Reward:
     if given not in PRESETS:
         raise unknown("reward", given, PRESETS, "reward")
     return PRESETS[given]
-
-
-@kernel
-def rewarded(
-    rows: FloatArray,
-    counts: IntArray,
-    before: FloatArray,
-    error_um: float,
-    effort: float,
-    change: float,
-    limit_v: float,
-    rewards: FloatArray,
-) -> None:
-    """Write the rewards of a step.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (ticks, signals, boards)
-        Model displacement, true displacement and applied voltage at each tick, in this order.
-    counts : ndarray, shape (boards,)
-        The ticks of each; the others have no reward.
-    before : ndarray, shape (boards,)
-        The voltage applied before, replaced by the last one.
-    error_um, effort, change, limit_v : float
-        The weights, and the limit of the drive.
-    rewards : ndarray, shape (boards,)
-        Receives the rewards.
-    """
-    for k in range(rows.shape[2]):
-        total, last = 0.0, before[k]
-        for i in range(counts[k]):
-            error, voltage = (rows[i, 0, k] - rows[i, 1, k]) / error_um, rows[i, 2, k]
-            used, moved = voltage / limit_v, (voltage - last) / limit_v
-            total += exp(-(error * error + effort * used * used + change * moved * moved))
-            last = voltage
-        before[k] = last
-        rewards[k] = total / rows.shape[0]

@@ -22,18 +22,19 @@ from scenarios.edit import with_values
 from scenarios.library import get
 from scenarios.outside.constraints import NOTHING, Constraints
 from scenarios.outside.episodes import Episode, Episodes, Ranges
-from scenarios.outside.rewards import Reward, reward_of, rewarded
+from scenarios.outside.judge import KEPT, OBSERVED, observe, reward
+from scenarios.outside.rewards import Reward, reward_of
 from scenarios.outside.scope_picture import Picture, ScopePicture
 from scenarios.run import DEFAULT_SAMPLES
 from scenarios.schema import Scenario
 
 Observation = NDArray[np.float32]
-JUDGED = ("model.displacement", "plant.displacement", "drive.voltage")
-SEEN = ("reference.voltage", "model.displacement", "sensor.displacement", "drive.voltage")
-"""Signals that an agent observes, together with the error: the model minus the measurement."""
-OBSERVED = ("reference", "model", "measured", "error", "applied")
+DRAWN = ("model.displacement", "plant.displacement", "drive.voltage")
+"""Signals of a picture."""
 MOST_SKIP = 10_000
 NO_RANGES: Ranges = {}
+FIRST, ONCE = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
+"""The place of a board by itself, and its single tick."""
 RENDER_MODES = ("rgb_array",)
 
 
@@ -113,19 +114,20 @@ class TrackingTask:
             options.constraints, board.signals.names, options.on_violation, float(options.penalty)
         )
         self._reward = reward_of(options.reward)
-        columns = [*SEEN, "plant.displacement", *self._constraints.names]
+        columns = [*KEPT, *self._constraints.names]
         try:
             self._boards = DrivenBoards(Pattern(board), count, options.frame_skip, columns)
         except Uneven as error:
             raise InputError(f"no agent can drive this scenario: {error}", "scenario") from None
-        self._judged = [columns.index(name) for name in JUDGED]
-        self._bounded = slice(len(columns) - len(self._constraints.names), None)
+        self._drawn = [columns.index(name) for name in DRAWN]
+        self._applied = columns.index("drive.voltage")
         self.limit_v = spec.context().limit_v
         self.scale_um, travel_um = _scale_um(self.scenario), float(_guard(self.scenario).travel_um)
         self._dt_ms = spec.dt_ms
         self._scales = 1.0 / np.array([self.limit_v, *[self.scale_um] * 3, self.limit_v])
         reach = travel_um / self.scale_um
         high = np.array([1.0, reach, reach, 2.0 * reach, 1.0], dtype=np.float32)
+        self._high = high.astype(np.float64)
         self.observation_space = Box(-high, high, dtype=np.float32)
         self.action_space = Box(-1.0, 1.0, (1,), np.float32)
         self._seen = np.zeros((count, len(OBSERVED)), dtype=np.float32)
@@ -154,40 +156,41 @@ class TrackingTask:
         except Uneven:
             text = "make another bench than the one of the environment"
             raise InputError(text, "options.values", "make an environment with these values") from None
-        self.episodes[place], self._steps[place], self._before[place] = episode, 0, row[self._judged[2]]
-        seen: Observation = self._observed(row[None, :, None])[0]
-        self._seen[place], self._values[place] = seen, 0.0
+        self.episodes[place], self._steps[place], self._before[place] = episode, 0, row[self._applied]
+        self._values[place] = 0.0
+        seen = np.zeros((1, len(OBSERVED)))
+        observe(row.reshape(1, 1, -1, 1), FIRST, ONCE, self._scales, self._high, seen)
+        self._seen[place] = seen[0]
         if self._pictures:
             self._pictures[place].clear()
-        return seen
+        begun: Observation = self._seen[place].copy()
+        return begun
 
     def step(self, places: IntArray, actions: NDArray[Any]) -> StepOutcome:
         """Hold a voltage at each of some boards for a step."""
         voltages = self.limit_v * np.asarray(actions, dtype=np.float64).reshape(len(places))
-        self._boards.advance(places, voltages)
-        tripped = self._boards.gone[places]
-        rows = self._boards.rows
-        if len(places) < rows.shape[2]:
-            rows = rows[:, :, places]
-        counts: IntArray = self._boards.counts[places] - tripped
-        rewards, before = np.empty(len(places)), self._before[places]
-        rewarded(np.ascontiguousarray(rows[:, self._judged]), counts, before, *self._reward, self.limit_v, rewards)
-        self._before[places] = before
+        boards = self._boards
+        boards.advance(places, voltages)
+        tripped, rows = boards.gone[places], boards.rows
+        counts: IntArray = boards.counts[places] - tripped
+        rewards, before, seen = np.empty(len(places)), self._before[places], self._seen[places].astype(np.float64)
+        reward(rows, places, counts, before, *self._reward, self.limit_v, rewards)
+        observe(rows, places, counts, self._scales, self._high, seen)
+        self._before[places], self._seen[places] = before, seen
         self._steps[places] += 1
-        has_rows = counts > 0
-        seen = self._observed(rows[np.maximum(counts - 1, 0), :, np.arange(len(places))][None].transpose(0, 2, 1))
-        seen = self._seen[places] = np.where(has_rows[:, None], seen, self._seen[places])
-        values = self._values[places] = self._constraints.values(rows[:, self._bounded], counts)
-        violated = self._constraints.violated(values)
-        rewards -= self._constraints.penalty * violated
-        is_long = self._steps[places] >= (self.options.max_episode_steps or np.inf)
-        terminated = tripped | (violated if self._constraints.ends else False)
+        terminated, is_over = tripped, boards.ticks[places] >= self._samples
+        if (most := self.options.max_episode_steps) is not None:
+            is_over |= self._steps[places] >= most
+        if self._constraints.names:
+            values = self._values[places] = self._constraints.values(boards.kept(places)[:, len(KEPT) :], counts)
+            violated = self._constraints.violated(values)
+            rewards -= self._constraints.penalty * violated
+            terminated = tripped | (violated if self._constraints.ends else False)
         if self._pictures:
+            drawn = boards.kept(places)[:, self._drawn]
             for i, place in enumerate(places):
-                self._pictures[place].add(rows[: counts[i], self._judged, i])
-        return StepOutcome(
-            seen, rewards, terminated, ~terminated & ((self._boards.ticks[places] >= self._samples) | is_long)
-        )
+                self._pictures[place].add(drawn[: counts[i], :, i])
+        return StepOutcome(self._seen[places], rewards, terminated, ~terminated & is_over)
 
     def draw(self, place: int) -> Picture:
         """Return the picture of a board."""
@@ -223,14 +226,6 @@ class TrackingTask:
         episode = self.episodes[place]
         assert episode is not None
         return episode.drawn
-
-    def _observed(self, rows: FloatArray) -> Observation:
-        """Return observations from rows, shape (1, signals, boards); all within the space."""
-        reference, model, measured, applied = rows[0, : len(SEEN)]
-        scaled = np.stack([reference, model, measured, model - measured, applied], axis=1) * self._scales
-        high = self.observation_space.high
-        found: Observation = np.clip(np.nan_to_num(scaled), -high, high).astype(np.float32)
-        return found
 
 
 def _check(scenario: Scenario, options: TaskOptions) -> None:

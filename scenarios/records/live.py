@@ -25,6 +25,8 @@ from scenarios.records.order import BlockOrder
 ENDING = ".live"
 ABOUT_BYTES = 4096
 """Beginning of the file: facts about the record as JSON, filled up with spaces."""
+CUT_OFF = "its server ended meanwhile"
+"""Why a record has ended whose file does not say why."""
 _growing: weakref.WeakValueDictionary[str, LiveRecord] = weakref.WeakValueDictionary()
 """The records that grow in this process, by their keys."""
 
@@ -42,6 +44,11 @@ class LiveRecord:
         Rate, name of the source, names of the columns, pairing.
     is_growing : bool
         Whether blocks still come.
+
+    Attributes
+    ----------
+    ended : str
+        Why it has ended; empty while it grows. The file says it too, unless a crash came first.
     """
 
     has_labels = False
@@ -50,11 +57,13 @@ class LiveRecord:
         self.path, self.key, self.is_growing = path, path.stem, is_growing
         self.rate_khz, self.source, self.hypotheses = float(about["rate_khz"]), str(about["source"]), ()
         self.names: list[str] = about["names"]
+        self.ended = "" if is_growing else str(about.get("ended", CUT_OFF))
         self.samples = max(0, (os.fstat(descriptor).st_size - ABOUT_BYTES) // PAIR)
         self.is_connected = is_growing
-        self.order, self.arrivals = BlockOrder(self.rate_khz, bool(about["shots"])), Arrivals()
+        self.order = BlockOrder(self.rate_khz, bool(about["shots"]), **about.get("counts", {}))
+        self.arrivals = Arrivals()
         self._is_paired_last = about["pairing"] == "last"
-        self._descriptor = descriptor
+        self._descriptor, self._about = descriptor, about
         self._held = 0.0
         self._carried = np.empty((0, 2))
         weakref.finalize(self, os.close, descriptor)
@@ -73,7 +82,7 @@ class LiveRecord:
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
-            os.pwrite(descriptor, json.dumps(about).encode().ljust(ABOUT_BYTES), 0)
+            os.pwrite(descriptor, _beginning(about), 0)
         except OSError as error:
             raise InputError(f"cannot write to {folder}: {error.strerror}", "records") from None
         record = cls(path, descriptor, about, is_growing=True)
@@ -120,15 +129,28 @@ class LiveRecord:
         pairs = np.frombuffer(content, "<f8").reshape(-1, 2)
         return pairs[:, 0], pairs[:, 1], None
 
-    def end(self) -> None:
-        """End: no more blocks come."""
-        self.is_growing = self.is_connected = False
+    def end(self, why: str) -> None:
+        """End for a reason: no more blocks come."""
+        self.ended, self.is_growing, self.is_connected = why, False, False
         _growing.pop(self.key, None)
+        with contextlib.suppress(OSError):
+            about = {**self._about, "ended": why[:200], "counts": self.order.counts()}
+            os.pwrite(self._descriptor, _beginning(about), 0)
+
+    @property
+    def last_line(self) -> str:
+        """The end of the record in a sentence, with the name of its file."""
+        kept = f"it is kept as {self.key[:12]}….live" if self.samples else "it has no sample"
+        return f"the record of instrument {self.source} ends at sample {self.samples}: {self.ended}; {kept}"
 
     def remove(self) -> None:
         """End, and remove the file."""
-        self.end()
+        self.end("it is removed")
         self.path.unlink(missing_ok=True)
+
+
+def _beginning(about: dict[str, Any]) -> bytes:
+    return json.dumps(about).encode().ljust(ABOUT_BYTES)
 
 
 def growing(key: str) -> LiveRecord | None:
@@ -157,7 +179,7 @@ def opened(path: Path) -> LiveRecord:
 
     Raises
     ------
-    OSError, ValueError, KeyError
+    OSError, ValueError, KeyError, TypeError
         When the file is absent or damaged.
     """
     descriptor = os.open(path, os.O_RDONLY)

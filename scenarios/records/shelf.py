@@ -22,10 +22,38 @@ from scenarios.records import live
 FOLDER = "COMBBENCH_RECORDS"
 """Variable of the environment that names the folder; worker processes inherit it."""
 KEY = "0123456789abcdef"
+_in_use: list[str | None] = []
+"""The folder of before, and the folders of the servers that run in this process."""
+
+
+@contextmanager
+def found_by_benches(folder: Path) -> Iterator[None]:
+    """Let the benches of this process find the records of a server; so do the processes that it starts.
+
+    Of several servers in one process each finds its own; a process finds the records of the newest that runs.
+    """
+    own = str(folder.resolve())
+    if not _in_use:
+        _in_use.append(os.environ.get(FOLDER))
+    _in_use.append(own)
+    os.environ[FOLDER] = own
+    try:
+        yield
+    finally:
+        _in_use.remove(own)
+        if (newest := _in_use[-1]) is None:
+            os.environ.pop(FOLDER, None)
+        else:
+            os.environ[FOLDER] = newest
+        if len(_in_use) == 1:
+            _in_use.clear()
 
 
 class RecordFolder:
-    """Records in a folder, which is made when the first is kept."""
+    """Records in a folder, which is made when the first is kept.
+
+    Without a path, the records of the servers that run in this process are found too.
+    """
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
@@ -43,9 +71,11 @@ class RecordFolder:
             return None
         if record := live.growing(key):
             return record
-        for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
-            with suppress(OSError, ValueError, KeyError, BadZipFile):  # absent, or damaged
-                return read(self.path / f"{key}{ending}")
+        of_servers = [Path(folder) for folder in _in_use[1:] if folder and self._path is None]
+        for folder in (self.path, *of_servers):
+            for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
+                with suppress(OSError, ValueError, KeyError, TypeError, BadZipFile):  # absent, or damaged
+                    return read(folder / f"{key}{ending}")
         return None
 
     def whole(self, key: str) -> MeasuredRecord | None:

@@ -8,7 +8,8 @@ from fastapi import Response
 
 from core.own.admission import kept
 from scenarios.in_a_file.bench_file import bench_file
-from scenarios.in_a_file.html import BuiltPage, html_of
+from scenarios.in_a_file.exhibit import exhibit
+from scenarios.in_a_file.html import BuiltPage
 from scenarios.library import get, ids
 from scenarios.schema import Scenario
 from server.api.deps import ServiceDep, SessionDep
@@ -22,7 +23,8 @@ from server.service import Service
 from server.version import VERSION
 
 MOST_S = 300.0
-"""Processor time of a file: on a machine that has made none yet, each of its blocks is lowered for the first time."""
+"""Processor time of a file: its scenario runs to its end, and each block that no file on this machine has had before is
+lowered."""
 ANSWERS: dict[int | str, dict[str, Any]] = {200: {"content": {HTML: {}}}}
 
 router = Router(tags=["scenarios"])
@@ -50,7 +52,7 @@ async def _answer(service: Service, document: dict[str, Any], name: str) -> Resp
 
 
 def html_file(document: dict[str, Any]) -> str:
-    """Return the file of a scenario.
+    """Return the file of a scenario, with its published run.
 
     Raises
     ------
@@ -59,4 +61,4 @@ def html_file(document: dict[str, Any]) -> str:
     """
     with kept():
         scenario: Scenario = read_scenario(document)
-    return html_of(bench_file(scenario), BuiltPage.of(DIST / "in-a-file"), VERSION)
+    return exhibit(scenario, bench_file(scenario), BuiltPage.of(DIST / "in-a-file"), VERSION).text

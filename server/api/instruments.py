@@ -32,6 +32,7 @@ class BenchOnInstrument(Body):
 
     scenario: Source = "first-look"
     set: Values = Field({}, description="Such as the fitted device: device.mass_kg, plant.offset_um")
+    device: str = Field("", max_length=40, description="Id of a measured device; empty: the scenario's own")
     noise_um: float | None = Field(
         None, gt=0, le=100, description="Noise that filters assume; null: the noise of the scenario"
     )
@@ -55,8 +56,12 @@ async def open_on_instrument(
     bits.
     """
     source = service.instruments.get(name)
+    values = body.set
+    if body.device:
+        device = await service.measured_devices.get(body.device)
+        values = {**device.for_bench(plays_record=True), **values}
     await service.benches.check(body.scenario, {})
     scenario = await asyncio.to_thread(read_scenario, body.scenario)
-    session = await service.instruments.open(source, scenario, body.noise_um, body.set, body.paused)
+    session = await service.instruments.open(source, scenario, body.noise_um, values, body.paused)
     response.headers["Location"] = f"/api/v1/benches/{session.id}"
     return await service.views.opened(session, person)

@@ -43,6 +43,7 @@ from server.stream.wire import (
     Reply,
     Resume,
     Subscribe,
+    Took,
     Unsubscribe,
 )
 
@@ -52,7 +53,8 @@ log = logging.getLogger(__name__)
 CLOSE_VERSION, CLOSE_FLOOD = 4001, 1008
 
 ACK = re.compile(rb'\{"type": ?"ack", ?"frame": ?(\d{1,10})\}')
-"""An acknowledgement as pages write it; any other spelling is parsed like other messages."""
+TOOK = re.compile(rb'\{"type": ?"took", ?"statuses": ?(\d{1,10})\}')
+"""Acknowledgements as pages write them; any other spelling is parsed like other messages."""
 
 CLOSE_S = 1.0
 """A client that has not taken the close after this long is cut off."""
@@ -147,13 +149,14 @@ class Conversation:
         self._subscribed: dict[int, int] = {}
 
     def hear(self, text: bytes) -> bool:
-        """Take an acknowledgement at once: there are as many of them as frames, and no answer is needed."""
-        acknowledged = ACK.fullmatch(text)
-        if acknowledged is None or int(acknowledged[1]) >= 2**32:
-            return False
-        if self._is_heard():
-            self._client.acknowledge(int(acknowledged[1]))
-        return True
+        """Take an acknowledgement at once: pages send one for each frame and status, and no answer is needed."""
+        for form, note in ((ACK, self._client.acknowledge), (TOOK, self._client.took)):
+            found = form.fullmatch(text)
+            if found is not None and int(found[1]) < 2**32:
+                if self._is_heard():
+                    note(int(found[1]))
+                return True
+        return False
 
     async def run(self, socket: WebSocket) -> None:
         """Read messages until the client leaves or sends too many."""
@@ -198,6 +201,8 @@ class Conversation:
         client = self._client
         if isinstance(message, Ack):
             client.acknowledge(message.frame)
+        elif isinstance(message, Took):
+            client.took(message.statuses)
         elif isinstance(message, CommandMessage):
             await self._command(message)
         elif isinstance(message, Subscribe):

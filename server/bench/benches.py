@@ -26,6 +26,7 @@ from server.bench.checkpoints import Kept
 from server.bench.commands import Reset, Seek
 from server.bench.engine import Engine
 from server.bench.events import Event
+from server.bench.instrument import tell_end
 from server.bench.pacing import usual_scale
 from server.bench.recorder import Recorder
 from server.bench.status import Opened
@@ -70,6 +71,8 @@ class Benches:
         self._sessions: dict[str, LiveBench] = {}
         self.travels = Travels(self, engine, settings.max_run_ticks)
         self._coming = 0
+        self.not_back: dict[str, str] = {}
+        """Benches that could not come back after a restart, each with the reason."""
 
     def __len__(self) -> int:
         return len(self._sessions)
@@ -86,10 +89,14 @@ class Benches:
         """Return a bench, or refuse with 404."""
         session = self._sessions.get(bench_id)
         if session is None:
-            raise not_found(
-                "bench", bench_id, "list the live ones at /api/v1/benches; a closed idle bench comes back by /reopen"
-            )
+            hint = "list the live ones at /api/v1/benches; a closed idle bench comes back by /reopen"
+            raise self.absent(bench_id, hint)
         return session
+
+    def absent(self, bench_id: str, hint: str) -> ApiError:
+        """Return the refusal of a bench that is not live, with the reason if it could not come back after a restart."""
+        why = self.not_back.get(bench_id)
+        return not_found("bench", bench_id, f"it could not come back after a restart: {why}" if why else hint)
 
     async def check(self, source: str | dict[str, Any], values: dict[str, Any]) -> None:
         """Refuse a scenario that makes no bench, or takes too much, before this process reads it."""
@@ -184,6 +191,7 @@ class Benches:
             scenario, board = kept.board_of()
             session = self.builder.around(scenario, board, kept.head.time_scale, class_id)
             kept.put_into(session)
+            tell_end(session)
             return session
 
         async def coming() -> LiveBench:

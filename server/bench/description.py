@@ -102,6 +102,7 @@ def _instrument(bench: LiveBench) -> InstrumentStatus | None:
         source=record.source,
         is_connected=record.is_connected,
         is_growing=record.is_growing,
+        ended="" if record.is_growing else record.last_line,
         names=record.names,
         received_khz=arrivals.rate_khz(now),
         lag_ms=arrivals.lag_ms(now),

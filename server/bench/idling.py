@@ -12,7 +12,7 @@ from server.bench.description import experiment_of
 from server.bench.engine import Engine
 from server.bench.status import Opened
 from server.clock import Clock
-from server.errors import ApiError, not_found
+from server.errors import ApiError
 from server.store.experiment import THIS_VERSION
 from server.store.links import Content, LinkDetail, Links
 
@@ -102,7 +102,7 @@ class Idling:
                 return found
             link = await self._links.let_go(bench_id)
             if link is None:
-                raise not_found("bench", bench_id, "it was closed")
+                raise self._benches.absent(bench_id, "it was closed")
             session = await self.open_link(link, bench_id)
             try:
                 await self._links.delete(bench_id)

@@ -121,6 +121,7 @@ class InstrumentStatus(BaseModel):
     source: str
     is_connected: bool = Field(description="Whether it sends; the bench waits for one that is gone")
     is_growing: bool = Field(description="Whether more samples may come; else the board trips at the end of the record")
+    ended: str = Field(description="Why no more samples come, and where the record is kept; empty: it grows")
     names: list[str] = Field(description="Its names of drive and displacement")
     received_khz: float = Field(description="Samples for each ms that came lately")
     lag_ms: float = Field(description="Time for which the oldest block waits that the board has not played")

@@ -8,6 +8,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from core.board.board import Board
 from core.errors import InputError
 from core.format import format_short
 from server.bench import commands
@@ -380,7 +381,9 @@ class DeviceTime:
     def _finish(self) -> None:
         """Pause at the end of the scenario; starting again goes beyond it."""
         self.is_started, self.ends_at = False, None
-        self._bench.note("scenario", "finished", "scenario finished; run to continue")
+        is_record = isinstance(self._bench.board, Board) and self._bench.board.spec.record is not None
+        text = "the record is played to its end" if is_record else "scenario finished; run to continue"
+        self._bench.note("scenario", "finished", text)
         self._bench.refresh_status()
 
     def _ahead(self, tick: int | None) -> int | None:

@@ -38,8 +38,10 @@ def bank_of(spec: Spec) -> Section:
     Raises
     ------
     InputError
-        If the bench has none, or a supervisor, whose acts would tell the answer.
+        If the bench has none, plays a record, or has a supervisor, whose acts would tell the answer.
     """
+    if spec.record is not None:
+        raise InputError("plays a record, on which no fault can act", "scenario", "hide a fault on a simulated device")
     if spec.supervisors:
         raise InputError("has a supervisor, whose acts would tell the fault", "scenario", "leave the supervisor out")
     for section in spec.diagnosers.values():

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from sqlalchemy import select
 
+from core.errors import InputError
 from core.own.admission import kept
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
@@ -170,8 +171,9 @@ class StudentBenches:
             return None
         try:
             return await self._benches.revive(found, self._continue)
-        except Exception:
+        except Exception as error:
             log.exception("bench %s cannot continue from its checkpoint", bench_id)
+            self._benches.not_back[bench_id] = str(error) if isinstance(error, InputError) else "an internal error"
             self._given_up.add(bench_id)
             return None
 

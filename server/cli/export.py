@@ -14,6 +14,7 @@ from scenarios.edit import parse_assignment, with_values
 from server.cli.terminal import AssignOption, load, plainly, say
 
 if TYPE_CHECKING:
+    from scenarios.in_a_file.bench_file import BenchFile
     from scenarios.in_a_file.html import BuiltPage
     from scenarios.schema import Scenario
 
@@ -88,27 +89,32 @@ def export(
 def _exhibit(scenario: Scenario, html: Path | None, scorm: Path | None, static: Path | None) -> None:
     """Write a scenario: with its published run as a file or a package, or with the whole page as a folder."""
     from scenarios.in_a_file.bench_file import bench_file
-    from scenarios.in_a_file.html import html_of
-    from scenarios.in_a_file.published import published
+    from scenarios.in_a_file.exhibit import exhibit
     from scenarios.in_a_file.scorm import package
     from server.version import VERSION
 
     made = bench_file(scenario)
     if static is not None:
-        from server.api.page import DIST
-        from server.cli.folder import write_folder
-
-        with writing(static, "--static"):
-            size = write_folder(scenario, made, DIST, static, VERSION)
-        say(f"{static}, {size / 1e3:.0f} kB: put it on any static host, or serve it by python3 -m http.server")
+        _static(scenario, made, static)
     else:
-        text = html_of(made, _built(), VERSION, published=published(scenario))
+        text = exhibit(scenario, made, _built(), VERSION).text
         if html is not None:
             _write(html, text.encode(), "--html")
         elif scorm is not None:
             _write(scorm, package(scenario.id, made.document["title"], text), "--scorm")
     for reason in made.left_out:
         say(f"  without {reason}")
+
+
+def _static(scenario: Scenario, made: BenchFile, folder: Path) -> None:
+    """Write the whole page with the bench."""
+    from server.api.page import DIST
+    from server.cli.folder import write_folder
+    from server.version import VERSION
+
+    with writing(folder, "--static"):
+        size = write_folder(scenario, made, DIST, folder, VERSION)
+    say(f"{folder}, {size / 1e3:.0f} kB: put it on any static host, or serve it by python3 -m http.server")
 
 
 def _sheet(scorm: Path, name: str) -> None:

@@ -16,7 +16,7 @@ from core.cards import BlockCard, card
 from core.errors import InputError
 from scenarios.claims import marks
 from scenarios.designer import evaluation
-from scenarios.in_a_file.bench_file import BenchFile
+from scenarios.in_a_file.bench_file import STAND_IN, BenchFile
 from scenarios.in_a_file.pack import packed
 from scenarios.run import build
 from scenarios.schema import Scenario
@@ -32,8 +32,6 @@ LEFT = ("in-a-file",)
 """Folders of the build that such a page does not need."""
 NOT_NEEDED = (".gz", ".woff", ".ttf")
 """Endings of files that it does not need: the host compresses, and all browsers that run it know WOFF2."""
-STAND_IN = "lcr-350"
-"""The device whose drawing the page shows where a device has none."""
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; "
     "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; base-uri 'none'; "

@@ -77,8 +77,8 @@ class Instruments:
             reader.close("the server is stopping")
         await asyncio.gather(*self._readers.values(), return_exceptions=True)
         for source in self._sources.values():
-            for record in source.records:
-                record.end()
+            for record in list(source.records):
+                source.end(record, "the server was stopped")
 
     async def run(self, clock: Clock) -> None:
         """Look again and again at slow connections, at records that no bench plays, and at the disk."""

@@ -140,8 +140,8 @@ class Source:
     def end(self, record: LiveRecord, why: str) -> None:
         """End a record."""
         self.records.remove(record)
-        record.end()
-        self._tell(record, f"the record of instrument {self.name} ends: {why}")
+        record.end(why)
+        self._tell(record, record.last_line)
 
     def status(self) -> SourceStatus:
         """Describe the source."""

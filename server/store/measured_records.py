@@ -18,7 +18,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from core.measured_record import MeasuredRecord
-from scenarios.records.shelf import FOLDER, RecordFolder
+from scenarios.records.shelf import RecordFolder
 from server.errors import ApiError, not_found
 from server.paging import WHOLE, ListPage, by_age
 from server.store.database import Database
@@ -50,10 +50,6 @@ class KeptRecord(BaseModel):
     created: datetime
 
 
-_IN_USE: list[str | None] = []
-"""The folder of before, and the folders of the servers that run in this process."""
-
-
 class MeasuredRecords:
     """Keeps records, each for its owner.
 
@@ -68,28 +64,6 @@ class MeasuredRecords:
     def __init__(self, database: Database, folder: Path) -> None:
         self._database, self.folder = database, folder
         self._turn = asyncio.Lock()
-
-    @contextmanager
-    def found_by_benches(self) -> Iterator[None]:
-        """Let the benches of this process, and of the processes it starts, find these records.
-
-        Of several servers in one process the newest that still runs counts, whichever of them ends first.
-        """
-        before, own = os.environ.get(FOLDER), str(self.folder.resolve())
-        if not _IN_USE:
-            _IN_USE.append(before)
-        _IN_USE.append(own)
-        os.environ[FOLDER] = own
-        try:
-            yield
-        finally:
-            _IN_USE.remove(own)
-            if (newest := _IN_USE[-1]) is None:
-                os.environ.pop(FOLDER, None)
-            else:
-                os.environ[FOLDER] = newest
-            if len(_IN_USE) == 1:
-                _IN_USE.clear()
 
     @contextmanager
     def uploading(self) -> Iterator[Path]:

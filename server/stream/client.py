@@ -32,6 +32,10 @@ CLOSE_SLOW, CLOSE_FAILED = 4408, 1011
 WINDOW = 2
 """Most frames sent and not acknowledged yet."""
 
+STATUSES = 4
+"""Most statuses sent and not taken yet, to a client that tells how many it has taken: a page that was stopped for a
+minute has not to work through a minute of them."""
+
 STALL_S = 5.0
 """The stream of a client that takes nothing for this long is closed."""
 
@@ -86,6 +90,7 @@ class Client:
         self._outbox: deque[bytes] = deque()
         self._wants_events = self._wants_status = self._wants_frame = False
         self._frame = self._acked = 0
+        self._statuses, self._taken = 0, -1
         self._taken_at = self._moved_at = clock()
         self._passed_on = 0
         self._told_slow_at = -1e9
@@ -123,6 +128,11 @@ class Client:
         if self._wants_frame:
             self.flush()
 
+    def took(self, statuses: int) -> None:
+        """Note how many statuses the client has taken, and send the news that waited for it."""
+        self._taken = max(self._taken, min(statuses, self._statuses))
+        self.flush()
+
     def resume(self, after: int) -> None:
         """Send the events after this one (again)."""
         self._cursor = min(after, self.session.events.last)
@@ -159,10 +169,17 @@ class Client:
         """Whether another frame may be sent."""
         return self._frame - self._acked < WINDOW and self.line.is_free
 
+    @property
+    def _lags(self) -> bool:
+        """Whether it has not taken the last statuses; news wait until it has."""
+        return self._taken >= 0 and self._statuses - self._taken >= STATUSES
+
     def _due(self) -> list[bytes]:
         """Take the messages to send now; written together they cost one system call."""
         due = [*self._outbox]
         self._outbox.clear()
+        if self._lags:
+            return due
         if self._wants_events:
             due += self._events()
         said, self._said = self._news.narration(self._said)
@@ -182,6 +199,7 @@ class Client:
     def _status(self) -> list[bytes]:
         """Return the status, with the scenario only if that has changed since; then the captures that are new."""
         self._wants_status = False
+        self._statuses += 1
         status = self._news.status(self._edition, self.dropped)
         self._edition = self._news.edition
         captured = [panel.captures(number) for number, panel in self.panels.items()]

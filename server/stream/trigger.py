@@ -9,6 +9,8 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from core.board.crossing import crossings
+
 Edge = Literal["rising", "falling", "either", "enters", "leaves"]
 BLOCK = 50_000
 """Ticks scanned at once; bounds the memory of a scan."""
@@ -61,13 +63,13 @@ class Trigger:
     upper: float = math.inf
 
     def __post_init__(self) -> None:
-        self._ways = ("rising", "falling") if self.edge == "either" else (self.edge,)
-        self._ready = dict.fromkeys(self._ways, False)
+        self._ways = ways(self.edge, self.level, self.upper, self.hysteresis)
+        self._ready = np.zeros(len(self._ways), dtype=np.int64)
 
     def restart(self, tick: int) -> None:
         """Forget the past; scan from ``tick``."""
         self.next_tick = tick
-        self._ready = dict.fromkeys(self._ways, False)
+        self._ready[:] = 0
 
     def scan(self, history: TriggerSamples, first_only: bool = False) -> list[int]:
         """Return the ticks of all crossings since the last scan, oldest first.
@@ -96,37 +98,27 @@ class Trigger:
 
     def _crossings(self, samples: NDArray[np.float32], first_only: bool) -> list[int]:
         """Scan one block; all ways, merged in order."""
-        hits: list[int] = []
-        states = []
-        for way in self._ways:
-            beyond, cleared = self._judged(way, samples)
-            marks = np.where(beyond, np.int8(1), np.where(cleared, np.int8(-1), np.int8(0)))
-            places = np.flatnonzero(marks)
-            values = marks[places]
-            before = np.concatenate(([-1 if self._ready[way] else 1], values[:-1])) if len(values) else values
-            hits += [int(place) for place in places[(values == 1) & (before == -1)]]
-            states.append((way, marks))
-        hits.sort()
-        stop = hits[0] + 1 if hits and first_only else len(samples)
-        for way, marks in states:
-            decided = np.flatnonzero(marks[:stop])
-            if len(decided):
-                self._ready[way] = bool(marks[decided[-1]] == -1)
-        ticks = sorted({self.next_tick + place for place in hits if place < stop})
-        if hits and first_only:
-            self.next_tick += stop
+        places = np.empty(1 if first_only else len(samples), dtype=np.int64)
+        is_outside = int(self.edge == "leaves")
+        count = crossings(np.ascontiguousarray(samples), self._ways, is_outside, self._ready, places)
+        ticks = [self.next_tick + place for place in places[:count].tolist()]
+        if ticks and first_only:
+            self.next_tick = ticks[0] + 1
         return ticks
 
-    def _judged(self, way: str, samples: NDArray[np.float32]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Return where the signal is where it triggers, and where it has been back by more than the hysteresis."""
-        level, upper, far = self.level, self.upper, self.hysteresis
-        if way == "rising":
-            return samples >= level, samples < level - far
-        if way == "falling":
-            return samples <= level, samples > level + far
-        if way == "leaves":
-            return (samples <= level) | (samples >= upper), (samples > level + far) & (samples < upper - far)
-        return (samples >= level) & (samples <= upper), (samples < level - far) | (samples > upper + far)
+
+def ways(edge: Edge, level: float, upper: float, hysteresis: float) -> NDArray[np.float32]:
+    """Return for each way of crossing its target, and the numbers beyond which the signal has been back.
+
+    In single precision, as the samples are.
+    """
+    up = (level, math.inf, level - hysteresis, math.inf)
+    down = (-math.inf, level, -math.inf, level + hysteresis)
+    if edge in ("enters", "leaves"):
+        far = hysteresis if edge == "enters" else -hysteresis
+        return np.array([(level, upper, level - far, upper + far)], dtype=np.float32)
+    found = {"rising": [up], "falling": [down], "either": [up, down]}
+    return np.array(found[edge], dtype=np.float32)
 
 
 def crossing_time(history: TriggerSamples, index: int, tick: int, *levels: float) -> float:

@@ -114,6 +114,13 @@ class Ack(Message):
     frame: int = Field(ge=0, lt=2**32)
 
 
+class Took(Message):
+    """The client has taken so many statuses of this stream; from then on the server sends a few more at most."""
+
+    type: Literal["took"]
+    statuses: int = Field(ge=0, lt=2**32)
+
+
 class Resume(Message):
     """Send every event after the event number ``after``: the first message after a reconnect."""
 
@@ -136,7 +143,7 @@ class CommandMessage(Message):
 
 
 ClientMessage = Annotated[
-    Subscribe | Rearm | Unsubscribe | Ack | Resume | Pong | CommandMessage, Field(discriminator="type")
+    Subscribe | Rearm | Unsubscribe | Ack | Took | Resume | Pong | CommandMessage, Field(discriminator="type")
 ]
 CLIENT_MESSAGE: TypeAdapter[Any] = TypeAdapter(ClientMessage)
 

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from core.errors import InputError
+from scenarios.edit import with_values
 from scenarios.in_a_file.bench_file import BenchFile, bench_file
 from scenarios.library import get
-from server.api import bench_files
+from scenarios.run import run
+from server.api import bench_files, page
 from server.cli.folder import answers, write_folder
+from server.cli.main import app
 
 LIGHT = "ch6-mimo"
 """A scenario with few blocks."""
@@ -93,7 +99,18 @@ def test_a_file_over_rest_is_refused_with_its_reason(live: Any):
     assert answer.status_code == 422 and "supervisor" in answer.json()["error"]["message"]
 
 
-def test_the_file_has_the_values_of_its_document(built: Path, monkeypatch: pytest.MonkeyPatch):
+def test_rest_and_command_line_give_one_file_with_the_values_and_the_published_run_of_its_document(
+    built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setattr(bench_files, "DIST", built)
-    text = bench_files.html_file({**get(LIGHT).document, "title": "Mine <b>"})
-    assert "<title>Mine &lt;b&gt;</title>" in text
+    monkeypatch.setattr(page, "DIST", built)
+    out = tmp_path / "mine.html"
+    changed = {"title": "Mine <b>", "samples": 400}
+    assigned = [text for name, value in changed.items() for text in ("--set", f"{name}={value}")]
+    done = CliRunner().invoke(app, ["export", LIGHT, "--html", str(out), *assigned])
+    assert done.exit_code == 0, done.output
+    scenario = with_values(get(LIGHT), changed)
+    text = bench_files.html_file(scenario.document)
+    assert text == out.read_text() and "<title>Mine &lt;b&gt;</title>" in text
+    (pack,) = re.findall(r'id="pack">([^<]*)<', text)
+    assert f'"digest":"{run(scenario).digest}"' in gzip.decompress(base64.b64decode(pack)).decode("latin-1")

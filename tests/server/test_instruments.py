@@ -14,11 +14,13 @@ import pytest
 
 from core.measured_record import MeasuredRecord, find_on
 from scenarios.library import get
-from scenarios.records import shelf
+from scenarios.records import live, shelf
 from scenarios.records.bench import on_record
 from scenarios.records.shelf import RecordFolder
 from scenarios.run import run
 from scenarios.schema import Scenario
+from server.instruments.source import Source
+from tests.scenarios.records.foreign import draw
 from tests.server.conftest import Live, serving
 from tests.server.instrument import FakeInstrument
 
@@ -292,6 +294,79 @@ def test_a_bench_that_begins_again_plays_its_record_and_goes_on_live(
         assert digest(server, bench) == before
         scope.block(1, 200, drive[200:260], displacement[200:260])
         assert played(server, bench, 260)["state"] == "running"
+
+
+def test_an_instrument_plays_with_a_device_that_a_record_calibrated(server: Live, listens: str) -> None:
+    one = draw(1, samples=2000)
+    rows = zip(one.drive.tolist(), one.displacement.tolist(), strict=True)
+    content = "\n".join(["drive,displacement", *(f"{u!r},{y!r}" for u, y in rows)])
+    made = server.http.post("/api/v1/records", content=content, params={"name": "a.csv", "rate_khz": 50}).json()
+    body = {"record": made["id"], "end": 2000, "name": "die 7"}
+    device = server.http.post("/api/v1/measured-devices", json=body).json()
+    with FakeInstrument(listens) as scope:
+        scope.begin()
+        values = opened(server, device=device["id"], set={"sensor.noise_um": 0.2})["parameters"]
+    assert values["device"]["mass_kg"] == device["values"]["device.mass_kg"]
+    assert values["plant"]["delay_samples"] == device["values"]["plant.delay_samples"]
+    assert values["sensors"]["recorded"]["noise_um"] == 0.2
+    unknown = server.http.post("/api/v1/instruments/scope/benches", json={"device": "0" * 30})
+    assert unknown.status_code == 404 and "measured device" in unknown.json()["error"]["message"]
+
+
+STOPPED = "the record of instrument scope ends at sample 300: the server was stopped; it is kept as "
+CUT_OFF = "the record of instrument scope ends at sample 300: its server ended meanwhile; it is kept as "
+
+
+def told(live: Live, bench: str) -> list[str]:
+    return [one["text"] for one in live.http.get(f"/api/v1/benches/{bench}/events").json()["events"]]
+
+
+@pytest.mark.parametrize(("is_killed", "line"), [(False, STOPPED), (True, CUT_OFF)])
+def test_after_a_restart_a_bench_says_once_that_its_record_has_ended_and_where_it_is_kept(
+    is_killed: bool, line: str, tmp_path: Path, measured: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drive, displacement = measured
+    if is_killed:  # the file does not say why it ends
+        monkeypatch.setattr(Source, "end", lambda self, record, why: live._growing.pop(record.key))
+    with serving(tmp_path, instrument_port=0) as first:
+        with FakeInstrument(first.http.get("/api/v1/instruments").json()["listens"]) as scope:
+            scope.begin()
+            bench = opened(first)["id"]
+            scope.block(0, 0, drive[:300], displacement[:300])
+            played(first, {"id": bench}, 300)
+            before = digest(first, {"id": bench})
+            first.advance(seconds=1.0)  # checkpoints are less than a second old
+    for _ in range(2):
+        with serving(tmp_path, instrument_port=0) as second:
+            second.until(bench, lambda one: one["state"] == "tripped")
+            status = second.get(bench)
+            assert status["tick"] == 300 and digest(second, {"id": bench}) == before
+            instrument = status["instrument"]
+            assert not instrument["is_growing"] and instrument["ended"].startswith(line)
+            assert instrument["blocks"] == (0 if is_killed else 1)  # of a crash the counts are not known
+            assert [one for one in told(second, bench) if one == instrument["ended"]] == [instrument["ended"]]
+            kept = tmp_path / "records" / f"{instrument['record']}.live"
+            made = second.http.post("/api/v1/records", content=kept.read_bytes(), params={"name": kept.name}).json()
+            assert made["samples"] == 300  # the page calibrates it as any other record
+
+
+def test_a_bench_whose_record_is_lost_says_so_after_a_restart(tmp_path: Path, measured: tuple[Any, Any]) -> None:
+    drive, displacement = measured
+    with serving(tmp_path, instrument_port=0) as first:
+        with FakeInstrument(first.http.get("/api/v1/instruments").json()["listens"]) as scope:
+            scope.begin()
+            bench = opened(first)
+            scope.block(0, 0, drive[:300], displacement[:300])
+            played(first, bench, 300)
+            first.advance(seconds=1.0)
+    (tmp_path / "records" / f"{bench['instrument']['record']}.live").unlink()
+    with serving(tmp_path) as second:
+        for answer in (
+            second.http.get(f"/api/v1/benches/{bench['id']}"),
+            second.http.post(f"/api/v1/benches/{bench['id']}/reopen"),
+        ):
+            assert answer.status_code == 404
+            assert "could not come back after a restart: plant.record: no record" in answer.json()["error"]["hint"]
 
 
 def test_a_record_without_a_bench_grows_no_longer(server: Live, listens: str) -> None:

@@ -16,11 +16,11 @@ import pytest
 
 from core.measured_record import MeasuredRecord
 from scenarios.library import get
+from scenarios.records import shelf
 from scenarios.records.bench import on_record
-from scenarios.records.shelf import FOLDER
+from scenarios.records.shelf import FOLDER, RecordFolder
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
-from server.store import measured_records
 from server.view3d.viewers import device_of
 from tests.scenarios.records.foreign import DT, draw
 from tests.server.classroom.group import Somebody, join, open_class
@@ -183,7 +183,11 @@ def test_the_scene_of_a_record_follows_it_and_has_no_faults(live: Live, foreign:
     assert live.command(bench["id"], "step", ticks=200).status_code == 200
     assert live.http.get(bench["view3d"]).status_code == 200
     session = live.service.benches.get(bench["id"])
-    pose = device_of(session).pose()
+    device = device_of(session)
+    pose = device.pose()
+    ghosts = {name for name in device.parts() if name.endswith("/outline")}
+    assert pose.reference_um is None and ghosts == {"/estimate/outline"}  # the reference did not drive the record
+    assert "/reference" not in device.picture(pose).nodes
     factor = float(re.search(r"motion ×\s*([0-9.]+)", pose.caption)[1])  # type: ignore[index]
     assert pose.displacement_um == pytest.approx(factor * session.board.value("plant.displacement"), rel=1e-6)
     assert (pose.turn, pose.shift_um, pose.faults) == (0.0, 0.0, ())
@@ -318,18 +322,22 @@ def test_records_outlive_the_server_and_uploads_under_way_do_not(tmp_path: Path)
         assert second.http.post(f"/api/v1/benches/{bench}/reopen").status_code == 200
 
 
-def test_of_two_servers_in_a_process_the_newest_that_runs_finds_its_records(
+def test_each_of_two_servers_in_a_process_finds_its_records_whichever_ends_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measured_records, "_IN_USE", [])
+    monkeypatch.setattr(shelf, "_in_use", [])
     monkeypatch.setenv(FOLDER, "before")
-    first, second = (
-        measured_records.MeasuredRecords(None, tmp_path / name).found_by_benches()  # type: ignore[arg-type]
-        for name in ("first", "second")
-    )
+    folders = [tmp_path / name for name in ("first", "second")]
+    few = [MeasuredRecord(50.0, np.arange(5.0), np.full(5, float(k))) for k in range(2)]
+    keys = [RecordFolder(folder).keep(one) for folder, one in zip(folders, few, strict=True)]
+    first, second = map(shelf.found_by_benches, folders)
     first.__enter__()
     second.__enter__()
+    assert all(RecordFolder().get(key) for key in keys)
+    monkeypatch.setenv(FOLDER, "of another test")
+    assert all(RecordFolder().get(key) for key in keys)
     first.__exit__(None, None, None)
-    assert os.environ[FOLDER] == str(tmp_path / "second")
+    assert os.environ[FOLDER] == str(folders[1])
+    assert RecordFolder().get(keys[0]) is None and RecordFolder().get(keys[1])
     second.__exit__(None, None, None)
     assert os.environ[FOLDER] == "before"

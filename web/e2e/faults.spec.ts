@@ -28,10 +28,10 @@ test("an injected fault is found and explained, the delay is printed, and healin
   await front(page, "Log", "Events");
   await expect(page.getByRole("button", { name: /kalman found m\+5 after \d+\ssamples/ })).toBeVisible();
   await page.getByRole("button", { name: /^\d.*inject added_mass/ }).click();
-  const live = page.getByRole("button", { name: "LIVE" }).first();
-  await expect(live).toHaveAttribute("aria-pressed", "false");
+  const past = page.getByRole("button", { name: "PAST → LIVE" });
+  await expect(past.first()).toBeVisible();
   await page.keyboard.press("l");
-  await expect(live).toHaveAttribute("aria-pressed", "true");
+  await expect(past).toHaveCount(0);
 
   await page.getByRole("tab", { name: "Faults" }).click();
   await page.getByRole("button", { name: "Heal all" }).click();

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.block import BlockParams
-from core.board.history import Float32Array
+from core.board.history import History
 from core.board.spec import Spec
 from core.board.wiring import needed
 from core.device.frame import Damage
@@ -33,8 +33,8 @@ SIDES = ((1, "right", 1), (-1, "left", 2))
 BEAMS = ((1, "plus"), (-1, "minus"))
 BEAM_UM, ABOVE_UM, BELOW_UM, SPOT_UM = 3.0, 130.0, 90.0, 5.0
 """Sizes of the light, large enough to see."""
-MOVED = ("plant.displacement", "model.displacement", "plant.rotation")
-SIGNALS = (*MOVED, "plant.shift", "plant.contact", "plant.short", "sensor.displacement")
+ALONG, TURNED = ("plant.displacement", "model.displacement"), "plant.rotation"
+SIGNALS = (*ALONG, TURNED, "plant.shift", "plant.contact", "plant.short", "sensor.displacement")
 LASERS = ("through_wafer", "dual_beam", "doppler")
 """Sensors that look at the grating with light."""
 APART_UM = 11.0
@@ -60,7 +60,8 @@ class ResonatorPose(Pose):
     Parameters
     ----------
     displacement_um, reference_um, estimate_um : float
-        Of the shuttle, its reference model and the winner of the first bank, exaggerated; no estimate without bank.
+        Of the shuttle, its reference model and the winner of the first bank, exaggerated; no estimate without bank, and
+        no reference beside a record, which another voltage drove.
     shift_um : float
         Sideways, true to scale.
     turn : float
@@ -76,7 +77,7 @@ class ResonatorPose(Pose):
     """
 
     displacement_um: float = 0.0
-    reference_um: float = 0.0
+    reference_um: float | None = 0.0
     estimate_um: float | None = None
     shift_um: float = 0.0
     turn: float = 0.0
@@ -92,9 +93,12 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
     blank = ResonatorPose()
 
     def __init__(self, session: LiveBench) -> None:
-        super().__init__(session, (*SIGNALS, *_bank(session)))
+        self._has_reference = session.board.spec.record is None
+        own = [name for name in SIGNALS if self._has_reference or name != "model.displacement"]
+        super().__init__(session, (*own, *_bank(session)))
         places = dict(zip(self._signals, self._indices, strict=True))
-        self._moved = [places[name] for name in MOVED if name in places]
+        self._along = [places[name] for name in ALONG if name in places]
+        self._turned = [places[TURNED]] if TURNED in places else []
         self._own = [name for name in SIGNALS if name in places]
         self.layout = Layout(session.board.spec.device.drawing)
         self._light = {
@@ -124,7 +128,8 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
             parts[f"/fingers/{name}"] = batch(layout.fingers(side), layout.finger_size, MOVING)
         parts |= {"/shuttle": frame(), "/shuttle/plate": solid(layout.shuttle(), MOVING)}
         parts |= {f"/beams/{name}": solid(beams.unbent, SILICON) for name, beams in self._flexures.items()}
-        for ghost, color in (("/reference", REFERENCE), ("/estimate", ESTIMATE)):
+        ghosts = {"/reference": REFERENCE} if self._has_reference else {}
+        for ghost, color in {**ghosts, "/estimate": ESTIMATE}.items():
             parts |= {ghost: frame(), f"{ghost}/outline": lines(layout.outline(), color)}
         return parts
 
@@ -139,14 +144,14 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         own, models = values[: len(self._own)].tolist(), values[len(self._own) :]
         known = dict.fromkeys(SIGNALS, 0.0) | dict(zip(self._own, own, strict=True))
         x, reference, turn, shift, contact, short, measured = (known[name] for name in SIGNALS)
-        self._magnify(history.columns(self._moved, head - round(3 * (period or 1000)), head, 1))
+        self._magnify(history, head - round(3 * (period or 1000)), head)
         plant = spec.plant.params
         turns = isinstance(plant, PlaneParams)
         combs = combs_of(shift, 1e-3 * turn, self.layout.tip_um, plant)
         gap = self.layout.geometry.gap_um
         pose = ResonatorPose(
             displacement_um=x * self._factor,
-            reference_um=reference * self._factor,
+            reference_um=reference * self._factor if self._has_reference else None,
             estimate_um=self._estimate(measured, models),
             shift_um=shift,
             turn=1e-3 * turn * self._turn_factor,
@@ -159,11 +164,14 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         )
         return pose, tick
 
-    def _magnify(self, recent: Float32Array) -> None:
-        """Choose the exaggerations from recent minima and maxima."""
-        largest = np.abs(finite(recent)).max(axis=(1, 2))
-        self._factor = exaggeration(float(largest[:2].max()), self._factor)
-        ends_um = 1e-3 * float(largest[2:].max(initial=0.0)) * self.layout.geometry.arm_length_um / 2
+    def _magnify(self, history: History, start: int, end: int) -> None:
+        """Choose the exaggerations from the minima and maxima of some ticks."""
+
+        def largest(columns: list[int]) -> float:
+            return float(np.abs(finite(history.columns(columns, start, end, 1))).max(initial=0.0)) if columns else 0.0
+
+        self._factor = exaggeration(largest(self._along), self._factor)
+        ends_um = 1e-3 * largest(self._turned) * self.layout.geometry.arm_length_um / 2
         self._turn_factor = exaggeration(ends_um, self._turn_factor, WANTED_TURN_UM, TURN_EXAGGERATIONS)
 
     def _estimate(self, measured: float, values: FloatArray) -> float | None:
@@ -204,7 +212,8 @@ class ResonatorModel(DeviceModel[ResonatorPose]):
         """Place the parts as in a pose."""
         x, y, turn = pose.displacement_um, pose.shift_um, pose.turn
         picture.set("/shuttle", position=place(x, y), wxyz=(math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)))
-        picture.set("/reference", position=place(pose.reference_um))
+        if self._has_reference:
+            picture.set("/reference", position=place(pose.reference_um or 0.0))
         picture.set("/estimate", position=place(pose.estimate_um or 0.0), visible=pose.estimate_um is not None)
         for name, beams in self._flexures.items():
             picture.set(f"/beams/{name}", faces=beams.faces, vertices=units(beams.bent(x, y, turn)))

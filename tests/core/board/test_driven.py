@@ -111,7 +111,7 @@ def test_signals_are_kept_at_the_cut_of_each_tick() -> None:
 
     board = build_hosted(scenario, 2, law=law)
     board.advance(121)
-    np.testing.assert_array_equal(boards.rows[:, :3, 1], seen[117:121])
+    np.testing.assert_array_equal(boards.kept(np.array([1]))[:, :3, 0], seen[117:121])
 
 
 def test_another_structure_is_refused() -> None:

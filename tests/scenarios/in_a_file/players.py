@@ -83,10 +83,14 @@ def _in_browser(
         pytest.skip(f"no {names[0]} here")
     answered = threading.Event()
     answers: list[Any] = []
-    with _served(json.dumps(jobs).encode(), answers, answered) as address, tempfile.TemporaryDirectory() as profile:
-        browser = subprocess.Popen(
+    with (
+        _served(json.dumps(jobs).encode(), answers, answered) as address,
+        # a process of the browser may still write to its profile while it ends
+        tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile,
+        subprocess.Popen(
             [program, *arguments(profile), address], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+        ) as browser,
+    ):
         try:
             assert answered.wait(MOST_SECONDS), f"{program} posted nothing"
         finally:

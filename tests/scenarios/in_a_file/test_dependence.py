@@ -36,6 +36,19 @@ def test_a_multiple_that_holds_only_at_the_power_of_two_is_no_multiple():
     assert "grid" in found
 
 
+@pytest.mark.parametrize("high", [1.0, 1e3, 1e6, 7.3e4])
+@pytest.mark.parametrize("pack", [lambda x: x * 1e-6 * 1.5174271293851465, lambda x: x / 1000.0])
+def test_a_product_that_is_rounded_twice_is_no_multiple(pack, high):
+    found = dependence(lambda x: np.array([pack(x)]), 0.0, high, [high])
+    assert "grid" in found
+
+
+def test_the_ends_of_a_grid_are_in_the_range_to_the_last_bit():
+    low, high = 0.015915494309189534, 1.5915494309189535
+    grid = dependence(lambda x: np.array([1.0 + x]), low, high, [0.5])["grid"]
+    assert (grid[0], grid[-1]) == (low, high)
+
+
 def test_a_range_without_values_is_refused():
     with pytest.raises(InputError, match="no values between"):
         dependence(lambda x: np.array([x]), 1.0, 1.0, [1.0])

@@ -45,7 +45,7 @@ def test_a_foreign_device_is_diagnosed_after_a_calibration_that_sees_no_label(se
 def test_a_device_outside_the_model_is_refused_in_a_sentence(outside: str) -> None:
     found = calibrate(record_of(draw(3, outside)), get("first-look").spec.nominal, 0, HEALTHY)
     assert found.refusal and not all(check.ok for check in found.checks)
-    words = {"drifting delay": "delay", "higher order": "higher order"}.get(outside, outside)
+    words = {"drifting delay": "delay", "stiction": "friction"}.get(outside, outside)
     assert words in found.refusal
 
 

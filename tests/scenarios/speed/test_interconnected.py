@@ -7,6 +7,7 @@ import pytest
 
 from core import registry
 from core.board.board import CHUNK, Board
+from scenarios.library import get
 from scenarios.speed.boards import ADAPTIVE, GAIN
 from scenarios.speed.gyroscope import ALIVE, ONE, running
 from scenarios.speed.interconnected import adaptive_loop, simulate
@@ -50,8 +51,10 @@ def test_every_controller_has_its_price():
         board.advance(CHUNK)
         for name in board.spec.controllers:
             costs |= block_costs(board, name)
-    board = running(ONE)
-    for name in board.spec.controllers:
-        costs |= block_costs(board, name, alive=ALIVE)
+    for bench in (ONE, get("ch6-mode-matching").spec):
+        board = running(bench)
+        alive = [one.key for one in board.wiring.instances if one.key in ALIVE]
+        for name in board.spec.controllers:
+            costs |= block_costs(board, name, alive=alive)
     assert set(costs) == set(registry.blocks("control"))
     assert np.isfinite(list(costs.values())).all()

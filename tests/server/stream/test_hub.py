@@ -23,7 +23,7 @@ from server.stream.client import Client
 from server.stream.codec import Frame, decode
 from server.stream.hub import EVENT_STATUS_S, PAGES_AT_ONCE, Hub
 from server.stream.panel import Panel
-from server.stream.wire import Subscribe
+from server.stream.wire import Reply, Subscribe
 
 
 class Line:
@@ -244,6 +244,35 @@ async def test_a_full_line_is_left_alone_until_it_has_drained() -> None:
     line.is_free = True
     client.flush()
     assert [frame.head for frame in line.frames()] == [137]
+
+
+@on_loop
+async def test_a_page_that_stopped_for_a_minute_gets_the_newest_status_and_not_a_minute_of_them() -> None:
+    bench = Bench()
+    client, line = bench.page()
+
+    def told(statuses: int) -> list[Any]:
+        for _ in range(statuses):
+            client.offer(status=True)
+        return [message for message in line.messages() if message["type"] == "status"]
+
+    assert len(told(300)) == 300  # a script that says nothing hears everything
+    client.took(300)
+    assert len(told(300)) == client_module.STATUSES
+    bench.session.time.slice(120)
+    bench.session.execute(parse({"kind": "pause"}), "test")
+    client.answer(Reply(id="c1", ok=True, tick=120))
+    assert [m["type"] for m in line.messages()] == ["status", "reply"]  # an answer does not wait
+    client.cuts.refresh()
+    client.offer(events=True, status=True, frame=True)
+    assert not line.written
+    client.took(10**9)  # its word for a status that was never sent is not taken
+    said = line.messages()
+    kinds = [m["type"] if isinstance(m, dict) else m.head for m in said]
+    told_kinds = [kind for kind in kinds if kind != "narration"]
+    assert told_kinds == ["events", "status", 120]
+    assert next(m["state"] for m in said if isinstance(m, dict) and m["type"] == "status") == "paused"
+    assert len(told(300)) == client_module.STATUSES - 1
 
 
 @on_loop

@@ -142,7 +142,7 @@ test("pictures of a race, adaptation, aliases and a swept sine are saved", async
   };
   const race = page
     .locator("div", { has: page.getByRole("combobox", { name: "Diagnosers shown" }) })
-    .filter({ has: page.getByRole("button", { name: "LIVE" }) })
+    .filter({ has: page.getByText("LIVE", { exact: true }) })
     .last();
   await expect(page.getByRole("region", { name: "Diagnosis by imm" })).toBeAttached();
   await server.advance(1);

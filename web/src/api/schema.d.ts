@@ -3920,6 +3920,12 @@ export interface components {
                 [key: string]: unknown;
             };
             /**
+             * Device
+             * @description Id of a measured device; empty: the scenario's own
+             * @default
+             */
+            device?: string;
+            /**
              * Noise Um
              * @description Noise that filters assume; null: the noise of the scenario
              */
@@ -5971,6 +5977,11 @@ export interface components {
              * @description Whether more samples may come; else the board trips at the end of the record
              */
             is_growing: boolean;
+            /**
+             * Ended
+             * @description Why no more samples come, and where the record is kept; empty: it grows
+             */
+            ended: string;
             /**
              * Names
              * @description Its names of drive and displacement
@@ -10260,6 +10271,19 @@ export interface components {
             behind?: components["schemas"]["BehindSpec"][];
         };
         /**
+         * Took
+         * @description The client has taken so many statuses of this stream; from then on the server sends a few more at most.
+         */
+        Took: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            type: "took";
+            /** Statuses */
+            statuses: number;
+        };
+        /**
          * TriggerSpec
          * @description The trigger of a panel; it sets the moment of the picture.
          */
@@ -10320,7 +10344,7 @@ export interface components {
             panel: number;
         };
         /** ClientMessage */
-        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
+        ClientMessage: components["schemas"]["Subscribe"] | components["schemas"]["Rearm"] | components["schemas"]["Unsubscribe"] | components["schemas"]["Ack"] | components["schemas"]["Took"] | components["schemas"]["Resume"] | components["schemas"]["Pong"] | components["schemas"]["CommandMessage"];
         /**
          * CaptureList
          * @description The captures kept of the trigger of a panel, oldest first: sent when they have changed.
@@ -17339,6 +17363,7 @@ export type Pong = components['schemas']['Pong'];
 export type Rearm = components['schemas']['Rearm'];
 export type Resume = components['schemas']['Resume'];
 export type Subscribe = components['schemas']['Subscribe'];
+export type Took = components['schemas']['Took'];
 export type TriggerSpec = components['schemas']['TriggerSpec'];
 export type Unsubscribe = components['schemas']['Unsubscribe'];
 export type ClientMessage = components['schemas']['ClientMessage'];

@@ -125,12 +125,13 @@ const layoutsAround = (scopes: Scope[]): Layouts => ({
     addMotion(api, scopes, wide);
     addTo(api, "schematic", "schematic", { left: "motion" });
     addTo(api, "faults", "faults", { below: "schematic" });
-    addBehind(api, "faults", wide ? ["controllers", "sheet"] : ["controllers"]);
+    addBehind(api, "faults", ["controllers"]);
     addTo(api, "view3d", "view3d", wide ? { right: "motion" } : { within: "schematic", inactive: true });
     addTo(api, "lanes", "lanes", { below: "motion" });
     if (wide) {
       addTo(api, "why", "why", { below: "view3d" });
       addBehind(api, "why", ["narrator", "claims"]);
+      addBehind(api, "view3d", ["sheet"]); // a third tab does not fit beside the faults, which a sheet asks for
       addBehind(api, "schematic", ["device"]);
       addBehind(api, "lanes", ["identify", "twins"]);
     } else addBehind(api, "lanes", ["why", "device"]);

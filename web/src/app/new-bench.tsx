@@ -111,7 +111,7 @@ function Gallery() {
           {words}
         </Button>
       ))}
-      {teaches && benches && <InstrumentOffer scenarios={benches.filter((s) => s.can_hide)} />}
+      {teaches && benches && <InstrumentOffer scenarios={benches.filter((s) => s.can_hide)} devices={measured} />}
       <SimpleGrid cols={2} spacing={12} mb={8} style={{ alignItems: "end" }}>
         <TextInput label="Search" value={query} onChange={(e) => setQuery(e.currentTarget.value)} data-autofocus />
         <NativeSelect

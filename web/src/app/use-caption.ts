@@ -13,7 +13,7 @@ interface CaptionShown {
   more: number;
 }
 
-export const moreText = (count: number) => `${formatCount(count, "sentence")} before:`;
+export const moreText = (count: number) => `Earlier: ${formatCount(count, "sentence")}.`;
 
 /** The newest sentence, a new one at most every two seconds; none while a vote asks what happens. */
 export function useCaption(): CaptionShown | undefined {

@@ -18,11 +18,12 @@ export function ViewChoice({ panel }: { panel: IDockviewPanel }) {
   );
   const views = viewsOn(name, axes && { axes });
   if (views.length < 2) return null;
+  const label = `Views of ${PANELS[name].title}: ${VIEW[shown].title}`;
   return (
     <Menu position="bottom-end" returnFocus>
       <Menu.Target>
-        <button type="button" className="dock-view" aria-label={`Views of ${PANELS[name].title}: ${VIEW[shown].title}`}>
-          {VIEW[shown].title} <IconChevronDown size={12} />
+        <button type="button" className="dock-view" aria-label={label} title={label}>
+          <span>{VIEW[shown].title}</span> <IconChevronDown size={12} />
         </button>
       </Menu.Target>
       <Menu.Dropdown>

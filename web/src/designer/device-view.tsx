@@ -2,6 +2,7 @@ import { Button } from "@mantine/core";
 import { useMemo } from "react";
 import { deviceDrawing } from "../picture/device-drawing";
 import { DevicePlan } from "../picture/device-plan";
+import { resonatorParts } from "../picture/plan-parts";
 import { EmptyState } from "../ui/empty-state";
 import { formatNumber, formatShort, formatSi } from "../ui/format";
 import styles from "./designer.module.css";
@@ -46,7 +47,7 @@ export function DeviceView({ geometry, title, onChooseDrawn }: DeviceViewProps) 
         role="img"
         aria-label={`${title} from above, to scale: ${formatSi(drawing.width, "um")} by ${formatSi(drawing.height, "um")}`}
       >
-        <DevicePlan drawing={drawing} />
+        <DevicePlan parts={resonatorParts(drawing)} />
         <g transform={`translate(${-width / 2 + MARGIN} ${drawing.height / 2 + 22})`}>
           <path d={`M0 -5 V5 M0 0 H${bar} M${bar} -5 V5`} className={styles.scale} />
           <text x={bar + 8} dominantBaseline="middle" className={styles.scaleText} style={letters}>

@@ -10,6 +10,15 @@ const SPARE = 1 << 20;
 /** The arrays that the next ticks depend on. */
 const NUMBERS = ["p", "s", "w", "io", "folds", "last"] as const;
 
+/** How a signal crosses: for each way the target and the numbers beyond which it has been back. */
+export interface Crossing {
+  ways: number[][];
+  /** Whether the target is outside its numbers. */
+  outside: boolean;
+  /** 1 where the signal has been back since the last crossing. */
+  ready: BigInt64Array;
+}
+
 /** The arrays of a bench in the memory of its code, and the kernels over them. */
 export class BenchArrays {
   readonly p: Placed<Float64Array>;
@@ -29,6 +38,10 @@ export class BenchArrays {
   private readonly groups: Placed<BigInt64Array>;
   private readonly places: Placed<BigInt64Array>;
   private readonly picture: Placed<Float32Array>;
+  /** Ways in which a signal crosses, whether it is ready for each, and the crossings that were found. */
+  private readonly ways: Placed<Float32Array>;
+  private readonly ready: Placed<BigInt64Array>;
+  private readonly found: Placed<BigInt64Array>;
   private readonly owners: Placed<BigInt64Array>;
   private readonly words: Placed<BigUint64Array>;
   /** Signals and folds of a board that rests. */
@@ -55,6 +68,9 @@ export class BenchArrays {
     this.groups = room.place(BigInt64Array, [SIGNALS]);
     this.places = room.place(BigInt64Array, [SIGNALS]);
     this.picture = room.place(Float32Array, [SIGNALS, 2, COLUMNS]);
+    this.ways = room.place(Float32Array, [2, 4]);
+    this.ready = room.place(BigInt64Array, [2]);
+    this.found = room.place(BigInt64Array, [COLUMNS]);
     this.owners = room.place(BigInt64Array, [outputs]);
     this.words = room.place(BigUint64Array, [document.rows.length, 2]);
     this.rested = room.place(Float64Array, [arrays.w.length + 1]);
@@ -146,6 +162,25 @@ export class BenchArrays {
     this.picture.lengths = [signals.length, 2, count];
     this.room.call("cut", ...this.rings, this.groups, this.places, ...kept, ...span, this.picture);
     return this.picture.view.slice(0, signals.length * 2 * count);
+  }
+
+  /** The ticks of a span at which a signal crosses, at most so many; the crossing keeps whether it has been back. */
+  crossings(signal: number, kept: [number, number], [start, stop]: [number, number], crossing: Crossing, most: number) {
+    const ticks: number[] = [];
+    this.ways.view.set(crossing.ways.flat());
+    this.ways.lengths = [crossing.ways.length, 4];
+    this.ready.view.set(crossing.ready);
+    this.ready.lengths = [crossing.ready.length];
+    for (let at = start; at < stop && ticks.length < most; at += COLUMNS) {
+      const end = Math.min(at + COLUMNS, stop);
+      this.cut([signal], kept, [at, end], end - at);
+      const samples = { ...this.picture, lengths: [end - at] }; // a column of one tick: its least value is the sample
+      this.found.lengths = [Math.min(COLUMNS, most - ticks.length)];
+      const [count] = this.room.call("crossings", samples, this.ways, Number(crossing.outside), this.ready, this.found);
+      ticks.push(...Array.from(this.found.view.subarray(0, count), (place) => at + Number(place)));
+    }
+    crossing.ready = this.ready.view.slice(0, crossing.ready.length);
+    return ticks;
   }
 
   /** The two words of each of these blocks, by which its outputs are known. */

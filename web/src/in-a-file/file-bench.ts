@@ -1,4 +1,4 @@
-import { BenchArrays } from "./bench-arrays";
+import { BenchArrays, type Crossing } from "./bench-arrays";
 import { type BoardCheckpoint, FileBoard } from "./file-board";
 import type { FileCommand, FileDiagnoser, FileDocument, FileEntry, FileSignal, TwinDocument } from "./file-document";
 import { digestOf } from "./sha";
@@ -131,6 +131,11 @@ export class FileBench extends FileBoard<FileDocument> {
       for (const [k, row] of rows.entries()) whole.set(cut.subarray(size * k, size * (k + 1)), size * row);
     }
     return whole;
+  }
+
+  override crossings(signal: number, span: [number, number], crossing: Crossing, most: number): number[] {
+    const { twin, column } = this.places[signal];
+    return (twin ?? this).arrays.crossings(column, [this.oldest, this.tick], span, crossing, most);
   }
 
   /** The value of a signal of the bench after the last tick; a twin that rests has none. */

@@ -1,4 +1,4 @@
-import type { BenchArrays } from "./bench-arrays";
+import type { BenchArrays, Crossing } from "./bench-arrays";
 import { carryOut } from "./carry-out";
 import type { BoardDocument, FileCommand, FileEntry, FileEvent } from "./file-document";
 import { Findings } from "./findings";
@@ -165,6 +165,11 @@ export class FileBoard<D extends BoardDocument = BoardDocument> {
   /** Least and largest values of signals in each column of a span of ticks. */
   cut(signals: readonly number[], start: number, stop: number, columns: number): Float32Array {
     return this.arrays.cut(signals, [this.oldest, this.tick], [start, stop], columns);
+  }
+
+  /** The ticks of a span at which a signal crosses, at most so many. */
+  crossings(signal: number, span: [number, number], crossing: Crossing, most: number): number[] {
+    return this.arrays.crossings(signal, [this.oldest, this.tick], span, crossing, most);
   }
 
   /** The value of a traced signal after the last tick. */

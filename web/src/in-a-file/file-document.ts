@@ -20,6 +20,8 @@ export interface FileFault {
   row: number;
   title: string;
   group: string;
+  /** The part of the device that it is seen on. */
+  shows: string | null;
   unit: string;
   suggested: number;
   minimum: number | null;
@@ -180,6 +182,8 @@ export interface FileDocument extends BoardDocument {
   absent: string;
   version: string;
   seed: number;
+  /** The numbers of the drawing of the device, or of the device drawn in its place; none for a gyroscope. */
+  plan: { geometry: Record<string, number> | null; is_stand_in: boolean };
   events: FileEvent[];
   /** Commands that have taken effect before the first tick, which the twins carry out at it. */
   done: [number, FileCommand][];

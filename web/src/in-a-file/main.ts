@@ -6,6 +6,7 @@ import type { Scheme } from "../ui/palette";
 import { teachWords } from "./bench-words";
 import { ControllerChoice } from "./controller-choice";
 import { Course, courseAround } from "./course";
+import { DevicePicture } from "./device-picture";
 import { element } from "./dom";
 import { EventList } from "./event-list";
 import { FaultList } from "./fault-list";
@@ -17,6 +18,7 @@ import { bytesOf, unpacked } from "./pack";
 import { PublishedRun } from "./published-run";
 import { QuestionList } from "./question-list";
 import { RunBar } from "./run-bar";
+import { followScheme } from "./scheme";
 import { ScopeView } from "./scope-view";
 import { TimeWindow } from "./time-window";
 import { ValueList } from "./value-list";
@@ -69,8 +71,9 @@ async function show(): Promise<void> {
   const faults = new FaultList(bench, act);
   const values = new ValueList(bench, act);
   const events = new EventList(bench);
+  const device = new DevicePicture(bench);
   const tellAll = () => {
-    for (const part of [bar, controllers, faults, values, events]) part.show();
+    for (const part of [bar, device, controllers, faults, values, events]) part.show();
   };
   const up = index ? element("a", { href: index }, "All exhibits") : "";
   const head = element("header", {}, up, element("h1", {}, title), element("p", { className: "note" }, summary));
@@ -78,20 +81,16 @@ async function show(): Promise<void> {
   const plots = element("div", { className: "plots" }, ...scopes.map(({ root }) => root), lanes?.root ?? "");
   const course = enterCourse(sheet);
   const questions = sheet && new QuestionList(sheet, (percent, isDone) => course?.score(percent, isDone));
-  const lists = [questions, published, controllers, faults, values, events];
+  const lists = [questions, device, published, controllers, faults, values, events];
   const aside = element("aside", {}, ...lists.flatMap((list) => list?.root ?? []));
   document.body.replaceChildren(element("main", {}, head, bar.root, notice, plots, aside, foot));
 
-  const dark = matchMedia("(prefers-color-scheme: dark)");
   let scheme: Scheme = "dark";
-  const dress = () => {
-    scheme = dark.matches ? "dark" : "light";
-    document.documentElement.dataset.mantineColorScheme = scheme;
+  followScheme((now) => {
+    scheme = now;
     for (const scope of scopes) scope.dress(scheme);
     isDirty = true;
-  };
-  dark.addEventListener("change", dress);
-  dress();
+  });
   time.listen(() => {
     isDirty = true;
   });
@@ -116,6 +115,7 @@ async function show(): Promise<void> {
     if (bench.tick !== before || isDirty) {
       for (const scope of scopes) scope.draw(tells);
       lanes?.draw(scheme);
+      device.draw();
       isDirty = false;
     }
     if (tells) {

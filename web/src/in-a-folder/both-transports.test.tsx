@@ -13,8 +13,9 @@ import { server } from "../testing/fake-server";
 import { connect } from "../testing/fake-transport";
 import { FolderBoard } from "../testing/folder-board";
 import { drawOnce } from "../testing/jsdom-gaps";
-import { recordedAnswer, recordedBench } from "../testing/recorded";
+import { recordedAnswer, recordedBench, recordedFolder } from "../testing/recorded";
 import { mount, words } from "../testing/render";
+import { FolderServer } from "./folder-server";
 
 const recorded = await recordedBench("first-look");
 const catalog = await recordedAnswer("catalog");
@@ -117,6 +118,24 @@ describe.each(BOARDS)("over %s", (_, open) => {
     expect(await screen.findByText(/^1\sactive fault$/)).toBeVisible();
     expect(screen.getByText("Added mass").closest("li")).toHaveTextContent(/\+5\s% since 18\.000\sms/);
   });
+});
+
+it("gives a page that has stopped no more than a few statuses, and then the newest", async () => {
+  const { code, document, answers } = await recordedFolder();
+  const told: { type: string; tick: number }[] = [];
+  const folder = new FolderServer(code, document, answers, (message) => {
+    if ("data" in message && typeof message.data === "string") told.push(JSON.parse(message.data));
+  });
+  const statuses = () => told.splice(0).filter(({ type }) => type === "status");
+  await folder.begin();
+  await folder.hear({ channel: 1, open: answers.bench.id });
+  for (let second = 0; second < 60; second += 1) folder.turn(1000 * second);
+  const before = statuses();
+  expect(before).toHaveLength(4);
+  await folder.hear({ channel: 1, text: JSON.stringify({ type: "took", statuses: 4 }) });
+  folder.turn(61_000);
+  const [after] = statuses();
+  expect(after.tick).toBeGreaterThan(before[3].tick);
 });
 
 it("heals, takes it back and refuses what a folder has not, in words", async () => {

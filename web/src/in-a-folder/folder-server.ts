@@ -77,7 +77,6 @@ export class FolderServer {
       this.post({ ask: message.ask, status, body });
     } else if ("open" in message) this.open(message.channel, message.open);
     else if ("text" in message) this.channels.get(message.channel)?.hear(JSON.parse(message.text) as ClientMessage);
-    else if ("taken" in message) this.channels.get(message.channel)?.took();
     else this.channels.delete(message.channel);
   }
 

@@ -26,6 +26,8 @@ export class LiveBench {
   track = new Track();
   /** Counts the changes of the scenario's document. */
   edition = 1;
+  /** Counts its histories: a return to another tick begins one, and its pictures are new. */
+  history = 0;
   /** The number of the last event that is of the bench whose past it shows. */
   takenOver = 0;
   private readonly changes = new Changes();
@@ -59,6 +61,7 @@ export class LiveBench {
     if (isSeen && of !== this) file.adopt(of.file);
     of.track.replay(file, tick, { from: isSeen ? tick : Math.max(0, tick - window), began, isBefore });
     this.track = of.track.until(file);
+    this.history += 1;
     file.heard = this.hear;
     this.edition += 1;
     this.time.isRunning = false;
@@ -152,6 +155,7 @@ export class LiveBench {
     const { file, time } = this;
     file.heard = undefined;
     file.reset();
+    this.history += 1;
     file.heard = this.hear;
     this.track = new Track();
     this.track.follow(file);

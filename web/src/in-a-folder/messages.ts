@@ -3,7 +3,6 @@ export type ToWorker =
   | { ask: number; method: string; path: string; query: string; body: Record<string, unknown> }
   | { channel: number; open: string }
   | { channel: number; text: string }
-  | { channel: number; taken: true }
   | { channel: number; close: true };
 
 export type FromWorker =

@@ -24,7 +24,6 @@ export function openFolder(port: Port): { transport: Transport; reach: (request:
       channel.onOpen();
     } else if ("data" in message) {
       channel.onMessage(message.data);
-      send({ channel: message.channel, taken: true });
     } else {
       channel.isOpen = false;
       channels.delete(message.channel);

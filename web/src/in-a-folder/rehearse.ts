@@ -16,6 +16,7 @@ export async function rehearse(
   answers: FolderAnswers,
   lines: Line[],
 ): Promise<unknown[][]> {
+  let statuses = 0;
   let said: unknown[] = [];
   const server = new FolderServer(
     await bytesOf(code),
@@ -25,10 +26,13 @@ export async function rehearse(
   );
   const ask = (message: ToWorker) => server.hear(message);
   const take = (message: FromWorker) => {
-    if ("data" in message) void ask({ channel: CHANNEL, taken: true });
     if ("ask" in message) said.push({ status: message.status, body: message.body });
-    else if ("data" in message && typeof message.data === "string") said.push(JSON.parse(message.data));
-    else if ("data" in message) {
+    else if ("data" in message && typeof message.data === "string") {
+      const words = JSON.parse(message.data);
+      said.push(words);
+      if (words.type === "status")
+        void ask({ channel: CHANNEL, text: JSON.stringify({ type: "took", statuses: ++statuses }) });
+    } else if ("data" in message) {
       const bytes = new Uint8Array(message.data as ArrayBuffer);
       said.push({ frame: btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), "")) });
       const frame = new DataView(bytes.buffer).getUint32(4, true);

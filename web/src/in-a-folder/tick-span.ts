@@ -32,3 +32,10 @@ export function spanBetween(start: number, end: number, width: number): TickSpan
   const columns = Math.max(1, Math.ceil((end - first) / step));
   return { start: first, end: first + columns * step, columns };
 }
+
+/** The columns of a window that begins at a tick. */
+export function spanFrom(start: number, window: number, width: number): TickSpan {
+  const step = columnStep(window, width);
+  const columns = Math.max(1, Math.ceil(window / step));
+  return { start, end: start + columns * step, columns };
+}

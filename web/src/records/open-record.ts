@@ -2,7 +2,7 @@ import { create } from "zustand";
 import { useView } from "../bench/view-store";
 
 /** The endings of files that may hold a record. */
-export const ENDINGS = [".csv", ".txt", ".tsv", ".dat", ".parquet", ".mat", ".nc", ".h5"];
+export const ENDINGS = [".csv", ".txt", ".tsv", ".dat", ".parquet", ".mat", ".npz", ".nc", ".h5", ".hdf5", ".live"];
 
 /** Whether a file may hold a record, by its name. */
 export const mayBeRecord = (name: string): boolean => ENDINGS.some((ending) => name.toLowerCase().endsWith(ending));

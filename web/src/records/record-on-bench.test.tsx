@@ -33,6 +33,21 @@ it("says how long the record is, and that nothing is scored without labels", asy
   expect(board.commands).toEqual([{ kind: "time_scale", value: null }]);
 });
 
+it("says of a live record whether its instrument sends, and why it has ended", () => {
+  const instrument = { source: "scope", is_connected: true, is_growing: true, ended: "" } as NonNullable<
+    typeof bench.instrument
+  >;
+  const board = connect({ ...played([]), time_scale: null, instrument });
+  mount(<RecordLine />);
+  const line = screen.getByRole("region", { name: "Record" });
+  expect(line).toHaveTextContent(/^scope, live:it is measured now\. It has no labels/);
+  board.status({ instrument: { ...instrument, is_connected: false } });
+  expect(line).toHaveTextContent(/the instrument is gone; the bench waits for it\. It has no labels/);
+  const ended = "the record of instrument scope ends at sample 2000: the server was stopped";
+  board.status({ instrument: { ...instrument, is_connected: false, is_growing: false, ended } });
+  expect(line).toHaveTextContent(/The record of instrument scope ends at sample 2000: the server was stopped\./);
+});
+
 it("goes forward in the record by the timeline, as far as the record is long", async () => {
   const board = connect({ ...played([]), tick: 8000, first_tick: 0, earliest_tick: 0, state: "paused", origin: null });
   const { user } = mount(<TimeBar />);

@@ -213,7 +213,11 @@ describe("StreamClient", () => {
       last()
         .sent.slice(1)
         .map((text) => JSON.parse(text)),
-    ).toEqual([{ type: "ack", frame: 2 }]);
+    ).toEqual([
+      { type: "took", statuses: 1 },
+      { type: "ack", frame: 2 },
+      { type: "took", statuses: 2 },
+    ]);
     client.feeds.draw();
     expect(draw).toHaveBeenCalledOnce();
   });

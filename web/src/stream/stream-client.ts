@@ -50,6 +50,8 @@ export class StreamClient {
   private bench = "";
   private attempt = 0;
   private nextId = 1;
+  /** Statuses of the present channel: a page that is stopped takes none, and the server then sends no more. */
+  private statuses = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(handlers: StreamHandlers, transport: Transport) {
@@ -112,6 +114,7 @@ export class StreamClient {
       onOpen: () => {
         clearTimeout(this.timer);
         opened = true;
+        this.statuses = 0;
         this.handlers.onOpen();
         this.feeds.reconnected();
       },
@@ -165,6 +168,7 @@ export class StreamClient {
     if (message.type === "reply") this.reply(message);
     if (message.type === "hello") this.attempt = 0;
     this.handlers.onMessage(message);
+    if (message.type === "status") this.send({ type: "took", statuses: ++this.statuses });
   }
 
   private receiveFrame(frame: Frame): void {

@@ -26,6 +26,7 @@ export type ClientMessage =
   | Schemas["Unsubscribe"]
   | Schemas["Rearm"]
   | Schemas["Ack"]
+  | Schemas["Took"]
   | Schemas["Resume"]
   | Schemas["Pong"]
   | { type: "command"; id: string; command: Command };

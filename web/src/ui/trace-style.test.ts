@@ -35,3 +35,18 @@ it("keeps the first eight hypotheses apart by colour alone", () => {
 it("gives the tenth hypothesis the colour of the second and a dash, as reports do", () => {
   expect(hypothesisStyle(9)).toEqual({ slot: hypothesisStyle(1).slot, dash: 1 });
 });
+
+it("gives the same signal of six twins six colours, none of them that of the board", () => {
+  const twins = ["pid", "lqg", "mrac", "pole", "stvsc", "open"];
+  const quantities = ["plant.displacement", "drive.voltage", "pid.integral", "plant.velocity"];
+  const all = [...quantities, ...twins.flatMap((twin) => quantities.map((name) => `${twin}:${name}`))];
+  for (const quantity of quantities) {
+    const styles = ["", ...twins.map((twin) => `${twin}:`)].map((of) => traceStyle(of + quantity, all, hypotheses));
+    expect(new Set(styles.map(({ slot }) => slot)).size).toBe(7);
+    expect(new Set(styles.map(({ dash }) => dash)).size).toBe(1);
+  }
+});
+
+it("gives a hypothesis of a twin the colour of the hypothesis", () => {
+  expect(traceStyle("pid:kalman.probability.m+5", signals, hypotheses)).toEqual(hypothesisStyle(1));
+});

@@ -18,17 +18,18 @@ export function TraceSwatch({ colour, dash }: { colour: string; dash: number }) 
   );
 }
 
-/** A signal's name: its block, then its quantity. */
+/** A signal's name: its block, then its quantity unless the block is named after it. */
 export function SignalName({ name }: { name: string }) {
-  const [block, ...rest] = name.split(".");
+  const [block, ...rest] = name.split(".").map(words);
+  const quantity = rest.join(" ");
   return (
     <span style={{ whiteSpace: "nowrap" }} title={name}>
       <Box component="span" c="dimmed">
-        {words(block)}
-      </Box>{" "}
-      <span data-rest>{words(rest.join(" "))}</span>
+        {block}
+      </Box>
+      {!block.endsWith(quantity) && <span data-rest> {quantity}</span>}
     </span>
   );
 }
 
-const words = (text: string) => text.replaceAll("_", " ");
+const words = (text: string): string => text.replaceAll("_", " ");

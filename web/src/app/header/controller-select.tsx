@@ -14,7 +14,7 @@ import { HeaderSelect, useLocked } from "./header-select";
  */
 export function ControllerSelect() {
   const slots = useBench(useShallow((s) => s.bench?.slots));
-  const wide = useMediaQuery("(min-width: 1560px)", undefined, { getInitialValueInEffect: false });
+  const wide = useMediaQuery("(min-width: 1800px)", undefined, { getInitialValueInEffect: false });
   const all = Object.entries(slots ?? { "": undefined });
   const active = wide ? all : all.slice(-1);
   return active.map(([slot, name]) => <SlotSelect key={slot} slot={slot} active={name} />);

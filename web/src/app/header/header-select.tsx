@@ -36,9 +36,9 @@ export function HeaderSelect({ label, value, choices, locked, onChoose }: Header
     <Select
       ref={input}
       className={styles.choice}
-      style={{ "--letters": (shown?.title.length ?? 8) + 6 } as CSSProperties}
+      style={{ "--letters": Math.max((shown?.title.length ?? 8) + 6, label.length) } as CSSProperties}
       label={label}
-      labelProps={{ display: "block", c: "dimmed", fz: "xs", fw: 450, lh: 1.2 }}
+      labelProps={{ className: "cut", display: "block", c: "dimmed", fz: "xs", fw: 450, lh: 1.2 }}
       title={locked ?? shown?.title}
       allowDeselect={false}
       value={value ?? null}

@@ -13,7 +13,9 @@ export function Supervisor() {
   const last = now.last_act;
   return (
     <Text component="div" fz="sm">
-      <p>{block("supervise", now.kind)?.title ?? now.kind}</p>
+      <p>
+        <b>{block("supervise", now.kind)?.title ?? now.kind}</b>
+      </p>
       <p>{verdict(now)}</p>
       {!!now.dead_ms && <p>Nothing counts for another {formatShort(now.dead_ms, "ms", 2)}.</p>}
       <p role="status">
@@ -28,7 +30,7 @@ export function Supervisor() {
 
 function verdict({ diagnoser, verdict, acting, held_ms }: Status): string {
   if (held_ms == null) return `It follows ${diagnoser}.`;
-  const acted = acting ? ` It acted on ${words(acting)} last.` : "";
+  const acted = acting && acting !== verdict ? ` It acted on ${words(acting)} last.` : "";
   if (!verdict) return `${diagnoser} has no verdict.${acted}`;
   return `${diagnoser} has named ${words(verdict)} for ${formatShort(held_ms, "ms", 2)}.${acted}`;
 }

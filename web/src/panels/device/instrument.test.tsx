@@ -10,6 +10,7 @@ const instrument = {
   source: "scope",
   is_connected: true,
   is_growing: true,
+  ended: "",
   names: ["CH1", "CH2"],
   received_khz: 100,
   lag_ms: 12,
@@ -50,6 +51,7 @@ it("says that the instrument is gone, and that the record has ended", () => {
   mount(<Instrument />);
   board.status({ instrument: { ...instrument, is_connected: false } });
   expect(screen.getByRole("status")).toHaveTextContent("It is gone; the bench waits.");
-  board.status({ instrument: { ...instrument, is_connected: false, is_growing: false } });
-  expect(screen.getByRole("status")).toHaveTextContent("The record has ended.");
+  const ended = "the record of instrument scope ends at sample 2000: the server was stopped";
+  board.status({ instrument: { ...instrument, is_connected: false, is_growing: false, ended } });
+  expect(screen.getByRole("status")).toHaveTextContent(`The record of instrument scope ends at sample 2000`);
 });

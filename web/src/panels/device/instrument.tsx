@@ -1,4 +1,5 @@
 import { useBench } from "../../stream/bench-store";
+import { sentence } from "../../ui/capital";
 import { formatSi } from "../../ui/format";
 import styles from "./instrument.module.css";
 
@@ -6,7 +7,7 @@ import styles from "./instrument.module.css";
 export function Instrument() {
   const one = useBench((s) => s.bench?.instrument);
   if (!one) return null;
-  const state = !one.is_growing ? "The record has ended." : one.is_connected ? "" : "It is gone; the bench waits.";
+  const state = !one.is_growing ? sentence(one.ended) : one.is_connected ? "" : "It is gone; the bench waits.";
   const latency = one.latency_p95_ms;
   const counts: [string, string | number][] = [
     ["Rate", formatSi(one.received_khz, "kHz", 3)],

@@ -31,7 +31,7 @@ export function FaultsPanel() {
     <section className="view" aria-label="Faults">
       <Group justify="space-between" wrap="nowrap" p="8px 8px 8px 12px" c="dimmed" fz="sm">
         <span>{acting.length === 0 ? "The device is healthy" : formatCount(acting.length, "active fault")}</span>
-        <Button flex="none" disabled={acting.length === 0} onClick={actions.healAll}>
+        <Button flex="none" style={{ visibility: acting.length > 0 ? "visible" : "hidden" }} onClick={actions.healAll}>
           Heal all
         </Button>
       </Group>

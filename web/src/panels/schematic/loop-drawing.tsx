@@ -99,4 +99,12 @@ const MOST_SAID = 15;
 
 const cut = (text: string, most: number) => (text.length > most ? `${text.slice(0, most - 1).trimEnd()}…` : text);
 
-const shorten = (title: string) => cut(title.replace(/\s*\(.*\)$/, ""), 14);
+/** Letters of a title with room in a box. */
+const MOST_TITLE = 14;
+
+/** A title for a box: without its brackets, or the acronym in them where the words have no room. */
+function shorten(title: string): string {
+  const words = title.replace(/\s*\(.*\)$/, "");
+  const acronym = /\(([A-Z]+)\)$/.exec(title)?.[1];
+  return acronym && words.length > MOST_TITLE ? acronym : cut(words, MOST_TITLE);
+}

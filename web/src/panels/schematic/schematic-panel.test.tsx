@@ -122,6 +122,11 @@ it("draws the way of a supervisor to the controller it changes, and none of one 
   expect(within(loop()).queryByText(words)).not.toBeInTheDocument();
 });
 
+it("says the acronym of a controller whose name has no room", async () => {
+  await mountPanel(driving("adrc"));
+  expect(await within(loop()).findByText("ADRC")).toBeInTheDocument();
+});
+
 it("cuts a verdict that is longer than its box", async () => {
   const named = { ...bench.diagnosers.kalman, names: ["a damping that nothing explains"], factors: [{}] };
   const { board } = await mountPanel({ ...bench, diagnosers: { kalman: named } });

@@ -81,7 +81,7 @@ function ComparedList({ compared }: { compared: Compared[] }) {
         <Fragment key={trace.name + measure}>
           <li>
             <SignalName name={trace.name} /> {measure === "noise" && measure}{" "}
-            <b>{isSettled || !ratio ? ratio : `${ratio}, still settling`}</b>
+            <b>{[ratio, !isSettled && "still settling"].filter(Boolean).join(", ")}</b>
           </li>
           <li title={MEANINGS[measure]}>
             <TraceSwatch colour={faded(trace.colour, scheme)} dash={trace.dash} />

@@ -29,12 +29,19 @@ it("says a slider from the value before it moved to the value at which it rests"
   expect(say(first, last)).toBe("Reference: amplitude 10 V → 5 V");
 });
 
+it("says another sensor by its two names", () => {
+  const path = "sensor.kind";
+  const event: Partial<LogEntry> = { kind: "set", old: { [path]: "ideal" }, new: { [path]: "capacitive" } };
+  expect(say(event)).toBe("Sensor: ideal → capacitive");
+});
+
 it.each([
   [218, 16.4, "13 times smaller"],
   [1, 2.5, "2.5 times larger"],
   [1, 1.08, "8.0 % larger"],
   [1, 0.65, "35.0 % smaller"],
   [1, 1.001, "unchanged"],
+  [0.0163, 100, "over 1000 times larger"],
   [0, 1, ""],
   [Number.NaN, 1, ""],
 ])("says that %d and then %d is %s", (before, after, words) => {

@@ -8,6 +8,8 @@ import { namedPath, valueText } from "../sets/named-path";
 
 /** Of a ratio: a smaller difference from 1 is none. */
 const ALIKE = 0.005;
+/** A larger ratio is one to almost nothing, whose digits say nothing. */
+const MANY = 1000;
 
 /** A change in a few words: "Added mass +5 %", "Switch to Direct MRAC", "Sine: amplitude 10 V → 5 V". */
 export function changeWords({ events }: Change, bench: Bench | undefined): string {
@@ -34,7 +36,8 @@ function setWords(first: LogEntry, last: LogEntry, bench: Bench | undefined): st
     const { block, parameter, unit } = namedPath(path, list, cardOf);
     const head = path.slice(0, path.lastIndexOf("."));
     const place = head.includes(".") ? block : (list.find((one) => one.path === head)?.title ?? block);
-    return `${place}: ${parameter.toLowerCase()} ${valueText(before[path], unit)} → ${valueText(now[path], unit)}`;
+    const quantity = path.endsWith(".kind") ? "" : `${parameter.toLowerCase()} `;
+    return `${place}: ${quantity}${valueText(before[path], unit)} → ${valueText(now[path], unit)}`;
   });
   return said.join(", ");
 }
@@ -47,5 +50,6 @@ export function ratioWords(before: number, after: number): string {
   const word = ratio > 1 ? "larger" : "smaller";
   const times = ratio > 1 ? ratio : 1 / ratio;
   if (times < 2) return `${formatPercent(Math.abs(ratio - 1))} ${word}`;
+  if (times > MANY) return `over ${MANY} times ${word}`;
   return `${formatNumber(times, times < 10 ? 1 : 0)} times ${word}`;
 }

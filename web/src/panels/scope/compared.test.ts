@@ -71,6 +71,7 @@ it.each([
 it.each([
   ["grew no more than the signal", [1, 3], [0.05, 0.1]],
   ["is small beside the signal", [10, 10], [0.05, 0.09]],
+  ["remains of an error that a controller has removed", [206, 15], [0.7, 15]],
 ])("leaves out a noise that %s", (_, [before, after], [quiet, loud]) => {
   const noise: [number, number][] = [[quiet, loud]];
   const figures = { before: [before], after: [after], settled: [true], noise };

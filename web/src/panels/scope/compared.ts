@@ -9,6 +9,8 @@ const DIGITS = 3;
 const STEP = 0.05;
 /** A noise below this share of the RMS is not to be seen. */
 const NOTABLE = 0.01;
+/** The logarithm of the ratio of an RMS that says enough: twice as large, or half. */
+const CHANGED = Math.LN2;
 /** The strength of a change from or to nothing. */
 const MOST = 5;
 /** A mean that moves by more than this share of the RMS before is a shift. */
@@ -61,7 +63,8 @@ export function comparedOf(
     if (isShifted) whole.ratio = `shifted by ${moved > 0 ? "+" : ""}${formatSi(moved, trace.unit, DIGITS)}`;
     const noises = trace.drives ? undefined : noise?.[i];
     if (!noises) return [whole];
-    // the RMS of a sine hides its noise
+    // the RMS of a sine hides its noise, but not where the sine itself came or went
+    if (Math.abs(change) > CHANGED) return [whole];
     const [quiet, loud] = noises;
     const grown = Math.min(MOST, Math.abs(Math.log(loud / quiet)));
     const hiss: Compared = { ...said(quiet, loud, grown), measure: "noise" };

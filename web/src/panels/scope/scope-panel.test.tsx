@@ -91,13 +91,24 @@ it("shows the past when a key pans, and live again with L", async () => {
   const { board, user } = mountScope([DISPLACEMENT]);
   board.frame({ [DISPLACEMENT]: Math.sin }, { head: 1000 });
   await drawOnce();
-  expect(screen.getByRole("button", { name: "PAUSED" })).toBeVisible();
+  expect(screen.getByText("PAUSED")).toBeVisible();
   screen.getByRole("group", { name: /^Plot/ }).focus();
   await user.keyboard("{ArrowLeft}");
   await waitFor(() => expect(board.subscriptions[0]).toMatchObject({ mode: "frozen", start_tick: 550, end_tick: 950 }));
   expect(screen.getByRole("button", { name: "PAST → LIVE" })).toBeVisible();
   await user.keyboard("l");
   expect(board.subscriptions[0].mode).toBe("roll");
+});
+
+it("keeps the focus where the key was pressed that led back to now", async () => {
+  const { board, user } = mountScope([DISPLACEMENT]);
+  board.frame({ [DISPLACEMENT]: Math.sin }, { head: 1000 });
+  await drawOnce();
+  screen.getByRole("group", { name: /^Plot/ }).focus();
+  await user.keyboard("{ArrowLeft}");
+  (await screen.findByRole("button", { name: "PAST → LIVE" })).focus();
+  await user.keyboard("{Enter}");
+  expect(await screen.findByText("PAUSED")).toHaveFocus();
 });
 
 it("says where there are no data", async () => {
