@@ -74,8 +74,8 @@ for _name, _object in OBJECTS.items():
     llvm.add_symbol(_name, id(_object))
 _new = ctypes.pythonapi.PyCFunction_NewEx
 _new.argtypes, _new.restype = [ctypes.POINTER(_Definition), ctypes.py_object, ctypes.py_object], ctypes.py_object
-_definitions: list[_Definition] = []
-"""Definitions that the code needs as long as it lives."""
+_keep = ctypes.pythonapi.Py_IncRef
+_keep.argtypes, _keep.restype = [ctypes.py_object], None
 
 
 def kind_of(value: Any) -> Any:
@@ -111,8 +111,9 @@ def plain(value: Any) -> Any:
 def made(function: FunctionType, kinds: Kinds) -> Callable[..., Any]:
     """Return what Python calls: the function compiled for arguments of some kinds."""
     address = loaded(piece(function, kinds).kept())
-    _definitions.append(_Definition(function.__name__.encode(), address, FASTCALL, None))
-    return _new(ctypes.byref(_definitions[-1]), None, None)  # type: ignore[no-any-return]
+    definition = _Definition(function.__name__.encode(), address, FASTCALL, None)
+    _keep(definition)  # for ever: the interpreter reads it while it ends, when the names of this module are gone
+    return _new(ctypes.byref(definition), None, None)  # type: ignore[no-any-return]
 
 
 def piece(function: FunctionType, kinds: Kinds) -> Piece:

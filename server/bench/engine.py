@@ -37,6 +37,8 @@ LATE_S, LATE_AGAIN_S = 0.1, 60.0
 SPARE_S = 0.001
 """Part of every round left to the rest of the process when a bench runs as fast as possible."""
 
+PATIENCE_S = 5.0
+"""How long the end of a thread is awaited, which may hang in the code of a unit."""
 
 PROCESSORS = os.cpu_count() or 1
 """How many benches are advanced side by side."""
@@ -159,8 +161,11 @@ class Engine:
         with self._wake:
             self._stopping = True
             self._wake.notify()
-        self._main.join(timeout=5.0)
+        self._main.join(timeout=PATIENCE_S)
         self._helpers.stop()
+        if not self._main.is_alive():
+            for thread in self._helpers.threads:  # compiled code must not run while the interpreter ends
+                thread.join(timeout=PATIENCE_S)
 
     @property
     def is_alive(self) -> bool:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import os
 import pickle
+import subprocess
+import sys
 import threading
 from types import ModuleType
 from typing import Any
@@ -256,3 +258,21 @@ def test_a_text_that_has_changed_since_it_was_loaded_is_not_compiled(tmp_path, m
         module.doubled(1.0)
     file.write_text(text + "# another line\n")
     assert module.doubled(1.0) == 2.0
+
+
+def test_a_kernel_is_whole_after_the_names_of_its_module_are_gone():
+    """An interpreter that ends drops the names of modules first, and looks at all functions afterwards."""
+    code = """
+import ctypes, gc
+import core.compile.entry as entry
+from core.kernel import flush_tiny
+assert flush_tiny(1.0) == 1.0
+(made,) = flush_tiny._made.values()
+vars(entry).clear()
+gc.collect()
+others = [ctypes.create_string_buffer(b"\\xff" * size) for size in (32, 64, 128) for _ in range(5000)]
+gc.collect()
+print(made.__name__, made(2.0))
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "flush_tiny 2.0\n"), ended.stderr
