@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args, get_origin
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -190,7 +191,7 @@ def _port(port: Port) -> PortCard:
 def _parameter(name: str, info: FieldInfo) -> ParameterCard:
     extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
     limits: dict[str, float] = {}
-    for constraint in info.metadata:
+    for constraint in _constraints(info):
         for key in ("ge", "gt", "le", "lt"):
             value = getattr(constraint, key, None)
             if value is not None:
@@ -216,16 +217,24 @@ def _parameter(name: str, info: FieldInfo) -> ParameterCard:
     )
 
 
+def _choices(annotation: Any) -> list[Any]:
+    """Return the types that a value may have besides none."""
+    is_one_of = get_origin(annotation) in (Union, UnionType)
+    return [one for one in get_args(annotation) if one is not type(None)] if is_one_of else [annotation]
+
+
+def _constraints(info: FieldInfo) -> list[Any]:
+    """Return the limits of a parameter, also where it may be none besides."""
+    inner = [meta for one in _choices(info.annotation) if get_origin(one) is Annotated for meta in get_args(one)[1:]]
+    return [*info.metadata, *(limit for meta in inner if isinstance(meta, FieldInfo) for limit in meta.metadata)]
+
+
 def _type(annotation: Any) -> tuple[str, list[str]]:
-    if get_origin(annotation) is Literal:
-        return "choice", [str(choice) for choice in get_args(annotation)]
-    if get_origin(annotation) is list:
-        return "list", []
-    if get_origin(annotation) is dict:
-        return "table", []
-    options = [option for option in get_args(annotation) if option is not type(None)] or [annotation]
-    simple = {bool: "boolean", int: "integer", float: "number", str: "text"}
-    for option in options:
-        if option in simple:
-            return simple[option], []
+    simple = {bool: "boolean", int: "integer", float: "number", str: "text", list: "list"}
+    for one in _choices(annotation):
+        bare = get_args(one)[0] if get_origin(one) is Annotated else one
+        if get_origin(bare) is Literal:
+            return "choice", [str(choice) for choice in get_args(bare)]
+        if (kind := simple.get(get_origin(bare) or bare)) is not None:
+            return kind, []
     return "table", []

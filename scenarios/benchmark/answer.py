@@ -94,14 +94,21 @@ def answers(
     return {name: _answer(track, result.trace, name, result.board.diagnosers[name].block) for name in diagnosers}
 
 
+def said_by(track: BenchmarkTrack, name: str, block: type[Block]) -> list[str]:
+    """Return the signals of a diagnoser that its answer and its digest are of."""
+    if not _is_bank(block):
+        return [f"{name}.{_moved(block)}"]
+    return [f"{name}.probability.{item.name}" for item in track.hypotheses]
+
+
 def _answer(track: BenchmarkTrack, trace: Mapping[str, FloatArray], name: str, block: type[Block]) -> CaseProbabilities:
     if not _is_bank(block):
         output = _moved(block)
-        said = np.ascontiguousarray(trace[f"{name}.{output}"])
+        said = np.ascontiguousarray(trace[said_by(track, name, block)[0]])
         return CaseProbabilities(np.abs(said - NEUTRAL[output]), None, _digest(said))
-    names = [item.name for item in track.hypotheses]
-    said = np.ascontiguousarray([trace[f"{name}.probability.{hypothesis}"] for hypothesis in names])
+    said = np.ascontiguousarray([trace[signal] for signal in said_by(track, name, block)])
     groups = [*track.classes.values()]
+    names = [item.name for item in track.hypotheses]
     places = [next(i for i, group in enumerate(groups) if hypothesis in group) for hypothesis in names]
     p = classed(said, np.array(places, dtype=np.int64), len(groups))
     return CaseProbabilities(surprise(p[0]), p, _digest(said))

@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from scenarios.in_a_file.bench_file import bench_file, refusal
+from scenarios.in_a_file.bench_file import BenchFile, bench_file, refusal
 from scenarios.in_a_file.exhibit import exhibit
-from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage
+from scenarios.in_a_file.html import SCRIPT, SHARED_POLICY, STYLE, BuiltPage, html_of
+from scenarios.in_a_file.track_file import track_file
 from scenarios.schema import Scenario
 
+INDEX_PAGE = "index.html"
 HEADINGS = {"app": "Appendices", "ch1": "1 Devices", "ch2": "2 Sensing", "ch3": "3 Adaptive control",
             "ch4": "4 Sliding control", "ch5": "5 Fault diagnosis", "ch6": "6 Gyroscopes",
             "gyr": "Gyroscopes beyond the text"}  # fmt: skip
@@ -50,7 +52,12 @@ CARD = """<li><a href="{id}.html">{title}</a> <span class="verdict">{verdict}</s
 
 
 def write_gallery(
-    folder: Path, chosen: Iterable[Scenario], built: BuiltPage, version: str, say: Callable[[str], None]
+    folder: Path,
+    chosen: Iterable[Scenario],
+    built: BuiltPage,
+    version: str,
+    say: Callable[[str], None],
+    tracks: Iterable[str] = (),
 ) -> list[str]:
     """Write the folder, and return the ids of the pages.
 
@@ -66,31 +73,53 @@ def write_gallery(
         Of this project.
     say : callable
         Takes a line for each page.
+    tracks : iterable of str
+        Tracks of the benchmark, which become pages too.
     """
     folder.mkdir(parents=True, exist_ok=True)
     pages: list[tuple[Scenario, dict[str, Any]]] = []
     refused: list[tuple[str, str]] = []
+
+    def write_page(name: str, text: str) -> None:
+        _write(folder / f"{name}.html", text)
+        say(f"{name}.html, {len(text.encode()) / 1e3:.0f} kB")
+
     for scenario in chosen:
         if reason := refusal(scenario):
             refused.append((reason, scenario.id))
             continue
-        made = exhibit(scenario, bench_file(scenario), None, version, index="index.html")
-        _write(folder / f"{scenario.id}.html", made.text)
-        say(f"{scenario.id}.html, {len(made.text.encode()) / 1e3:.0f} kB")
+        made = exhibit(scenario, bench_file(scenario), None, version, index=INDEX_PAGE)
+        write_page(scenario.id, made.text)
         pages.append((scenario, made.record))
-    if not pages:
+    files = {page_of(name): track_file(name) for name in tracks}
+    for name, file in files.items():
+        write_page(name, html_of(file, None, version, index=INDEX_PAGE))
+    if not pages and not files:
         raise InputError("none of these scenarios can be a bench in a file", "--gallery")
     _write(folder / SCRIPT, built.script)
     _write(folder / STYLE, built.style)
-    _write(folder / "index.html", _index(pages, refused, version))
-    return [scenario.id for scenario, _ in pages]
+    _write(folder / INDEX_PAGE, _index(pages, files, refused, version))
+    return [*(scenario.id for scenario, _ in pages), *files]
 
 
-def _index(pages: list[tuple[Scenario, dict[str, Any]]], refused: list[tuple[str, str]], version: str) -> str:
+def page_of(track: str) -> str:
+    """Return the name of the page of a track of the benchmark."""
+    return f"benchmark-{track.replace('_', '-')}"
+
+
+def _index(
+    pages: list[tuple[Scenario, dict[str, Any]]],
+    files: dict[str, BenchFile],
+    refused: list[tuple[str, str]],
+    version: str,
+) -> str:
     sections = []
     for heading, group in groupby(pages, lambda page: HEADINGS.get(page[0].id[:3], "First looks")):
         cards = "\n".join(_card(scenario, record) for scenario, record in group)
         sections.append(f"<section><h2>{heading}</h2>\n<ul>\n{cards}\n</ul></section>")
+    if files:
+        cards = "\n".join(_track_card(name, file) for name, file in files.items())
+        sections.append(f"<section><h2>Benchmark of fault diagnosis</h2>\n<ul>\n{cards}\n</ul></section>")
     missing = [
         f"Without {', '.join(name for _, name in group)}: {reason}."
         for reason, group in groupby(sorted(refused), lambda one: one[0])
@@ -108,6 +137,12 @@ def _card(scenario: Scenario, record: dict[str, Any]) -> str:
     head = scenario.head
     words = {"title": head.title or scenario.id, "claim": head.claim or head.summary, "source": head.source}
     return CARD.format(id=scenario.id, verdict=record["verdict"], **{k: html.escape(one) for k, one in words.items()})
+
+
+def _track_card(name: str, file: BenchFile) -> str:
+    rows = len(file.document["track"]["rows"])
+    words = {"title": file.document["title"], "claim": file.document["summary"], "source": f"{rows} published rows"}
+    return CARD.format(id=name, verdict="", **{k: html.escape(one) for k, one in words.items()})
 
 
 def _write(file: Path, text: str) -> None:

@@ -10,6 +10,7 @@ from core import registry
 from core.cards import ParameterCard, parameter_cards
 from core.device.catalogue import devices
 from core.device.device import Device
+from core.device.electrodes import Comb, TuningElectrode
 from core.device.geometry import Geometry
 from core.table import Words
 from scenarios import designer
@@ -33,10 +34,13 @@ class DeviceCard(AnswerBody):
 
 
 class DeviceList(BaseModel):
-    """Every device of the catalogue, and the choices of a drawing."""
+    """Every device of the catalogue, and the choices of a drawing and of electrodes."""
 
     devices: list[DeviceCard]
     geometry: list[ParameterCard]
+    fringing: ParameterCard = Field(description="The field beyond the facing sides of fingers, of a resonator")
+    comb: list[ParameterCard] = Field(description="electrodes.drive and electrodes.sense of a gyroscope")
+    tuning: list[ParameterCard] = Field(description="electrodes.tuning of a gyroscope")
 
 
 class Design(Body):
@@ -78,6 +82,9 @@ def get_devices() -> DeviceList:
             for device in devices()
         ],
         geometry=parameter_cards(Geometry),
+        fringing=next(card for card in parameter_cards(Device) if card.name == "fringing"),
+        comb=parameter_cards(Comb),
+        tuning=parameter_cards(TuningElectrode),
     )
 
 

@@ -138,16 +138,18 @@ def _gallery(folder: Path, pattern: str) -> None:
     """Write the library as a folder for a static host."""
     from fnmatch import fnmatch
 
-    from scenarios.in_a_file.gallery import write_gallery
+    from scenarios.benchmark.track import tracks
+    from scenarios.in_a_file.gallery import INDEX_PAGE, page_of, write_gallery
     from scenarios.library import get, ids
     from server.version import VERSION
 
     names = [name for name in ids() if fnmatch(name, pattern)]
-    if not names:
+    chosen = [name for name in tracks() if fnmatch(page_of(name), pattern)]
+    if not names and not chosen:
         raise InputError(f"no scenario matches {pattern!r}", "scenario")
     with writing(folder, "--gallery"):
-        pages = write_gallery(folder, map(get, names), _built(), VERSION, say)
-    say(f"{folder / 'index.html'}, {len(pages)} pages")
+        pages = write_gallery(folder, map(get, names), _built(), VERSION, say, chosen)
+    say(f"{folder / INDEX_PAGE}, {len(pages)} pages")
 
 
 def _built() -> BuiltPage:

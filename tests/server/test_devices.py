@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from core.device.catalogue import device
+from server.cli.main import app
 
 EPSILON_0 = 8.8541878128e-12
 
@@ -237,3 +240,42 @@ def test_a_device_says_which_plants_suit_it_and_the_bench_agrees(live):
     for name, suited in devices.items():
         of = device({"id": name})
         assert ("gyroscope" in suited) == (of.gyroscope is not None or of.drawn_gyroscope is not None)
+
+
+def test_the_list_has_the_choices_of_fringing_and_the_limits_of_electrodes(live):
+    listed = live.http.get("/api/v1/devices").json()
+    assert listed["fringing"]["type"] == "choice" and listed["fringing"]["choices"] == ["grounded_plane", "free"]
+    comb, tuning = ({card["name"]: card for card in listed[name]} for name in ("comb", "tuning"))
+    assert list(comb) == ["bias_v", "fingers", "thickness_um", "gap_um"]
+    assert (comb["fingers"]["type"], comb["fingers"]["minimum"], comb["fingers"]["maximum"]) == ("integer", 1, 100_000)
+    assert (comb["gap_um"]["type"], comb["gap_um"]["minimum"], comb["gap_um"]["default"]) == ("number", 1e-3, None)
+    assert list(tuning) == ["plates", "length_um", "thickness_um", "gap_um"]
+    assert [card["default"] for card in tuning.values()] == [20, 400.0, 60.0, 3.0]
+
+
+def test_fringing_and_electrodes_are_worked_out_like_any_number_of_a_device(live):
+    plain, above = ({"id": "lcr-350"}, {"id": "lcr-350", "fringing": "grounded_plane"})
+    factor = figures(live, device=above)["fringing_factor"]["value"]
+    force = (
+        figures(live, device=above)["force_n_per_v"]["value"] / figures(live, device=plain)["force_n_per_v"]["value"]
+    )
+    assert force == pytest.approx(factor, rel=1e-12) and factor == pytest.approx(1.118, rel=5e-3)
+    comb = {"fingers": 100, "thickness_um": 60.0, "gap_um": 3.0}
+    found = figures(live, device={"id": "gyro-c", "electrodes": {"drive": comb, "tuning": {}}})
+    # 4 n eps t/g, and 2 eps A/g^3
+    assert found["gyro.force_x_nn_per_v2"]["value"] == pytest.approx(4e9 * 100 * EPSILON_0 * 60 / 3, rel=1e-12)
+    softening = 2 * EPSILON_0 * 20 * 400e-6 * 60e-6 / (3e-6) ** 3
+    assert found["gyro.softening_n_m_per_v2"]["value"] == pytest.approx(softening, rel=1e-9)
+
+
+def test_the_command_line_runs_devices_with_fringing_and_with_volts():
+    def ran(name, **values):
+        changes = [word for path, value in values.items() for word in ("--set", f"{path.replace('__', '.')}={value}")]
+        answer = CliRunner().invoke(app, ["run", name, "--set", "duration_ms=1", *changes, "--json"])
+        return json.loads(answer.stdout)["metrics"]
+
+    assert ran("ch1-fringing", device__fringing="free")["device.fringing_factor"] == pytest.approx(2.065, rel=5e-3)
+    comb = "{fingers=100,thickness_um=60.0,gap_um=3.0}"
+    combs = {"device__electrodes__drive": comb, "device__electrodes__sense": comb}
+    found = ran("gyro-feed-through", drive__by="volts", **combs)
+    assert found["gyro.force_x_nn_per_v2"] == pytest.approx(4e9 * 100 * EPSILON_0 * 60 / 3, rel=1e-12)

@@ -41,9 +41,13 @@ def node() -> str:
     return next((str(one) for one in own if one.is_file()), shutil.which("node") or "")
 
 
+def bundle() -> str:
+    """Return a folder with the bench of a file as a module; the test is skipped where no Node is."""
+    return _bundle().name
+
+
 @cache
 def _bundle() -> tempfile.TemporaryDirectory[str]:
-    """Return a folder with the bench of a file as a module; the test is skipped where no Node is."""
     if not node() or not (WEB / "node_modules" / "rolldown").is_dir():
         pytest.skip("Node or the packages of the page are not here; they are wherever the page is built")
     folder = tempfile.TemporaryDirectory(prefix="play-")
@@ -53,7 +57,7 @@ def _bundle() -> tempfile.TemporaryDirectory[str]:
 
 def in_node(jobs: Jobs) -> list[list[dict[str, Any]]]:
     """Play jobs in Node."""
-    command = [node(), str(HERE / "play.mjs"), _bundle().name]
+    command = [node(), str(HERE / "play.mjs"), bundle()]
     ended = subprocess.run(
         command, input=json.dumps(jobs), capture_output=True, text=True, check=False, timeout=MOST_SECONDS
     )
@@ -106,7 +110,7 @@ def _served(jobs: bytes, answers: list[Any], answered: threading.Event) -> Itera
     parts = {
         "/": (PAGE, "text/html"),
         "/jobs": (jobs, "application/json"),
-        "/play.mjs": (Path(_bundle().name, "play.mjs").read_bytes(), "text/javascript"),
+        "/play.mjs": (Path(bundle(), "play.mjs").read_bytes(), "text/javascript"),
     }
 
     class Handler(BaseHTTPRequestHandler):

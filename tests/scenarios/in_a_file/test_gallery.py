@@ -13,6 +13,8 @@ import pytest
 
 from core.errors import InputError
 from scenarios.edit import with_values
+from scenarios.in_a_file import gallery
+from scenarios.in_a_file.bench_file import BenchFile
 from scenarios.in_a_file.gallery import write_gallery
 from scenarios.in_a_file.html import BuiltPage
 from scenarios.library import get
@@ -63,6 +65,17 @@ def test_the_index_links_to_every_page_and_names_the_scenarios_without_one(folde
     text = (folder / "index.html").read_text()
     assert re.findall(r'<li><a href="([^"]+)"', text) == [f"{LIGHT}.html"]
     assert "Without appB-mit: it is a study" in text and "1.2.3" in text
+
+
+def test_tracks_of_the_benchmark_are_pages_with_a_section_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    rows = [{"unit": "mmae"}, {"unit": "imm"}]
+    file = BenchFile(b"code", {"title": "Drift <1>", "summary": "Has it?", "track": {"rows": rows}}, [])
+    monkeypatch.setattr(gallery, "track_file", lambda _name: file)
+    assert write_gallery(tmp_path, [], BuiltPage("", ""), "1", print, ["closed_loop"]) == ["benchmark-closed-loop"]
+    text = (tmp_path / "index.html").read_text()
+    assert "Benchmark of fault diagnosis" in text and "2 published rows" in text and "Drift &lt;1&gt;" in text
+    page = _document((tmp_path / "benchmark-closed-loop.html").read_text())
+    assert page["track"]["rows"] == rows and page["index"] == "index.html"
 
 
 def test_a_folder_without_any_page_is_refused(tmp_path: Path):

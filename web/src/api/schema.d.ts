@@ -4721,13 +4721,25 @@ export interface components {
         };
         /**
          * DeviceList
-         * @description Every device of the catalogue, and the choices of a drawing.
+         * @description Every device of the catalogue, and the choices of a drawing and of electrodes.
          */
         DeviceList: {
             /** Devices */
             devices: components["schemas"]["DeviceCard"][];
             /** Geometry */
             geometry: components["schemas"]["ParameterCard"][];
+            /** @description The field beyond the facing sides of fingers, of a resonator */
+            fringing: components["schemas"]["ParameterCard"];
+            /**
+             * Comb
+             * @description electrodes.drive and electrodes.sense of a gyroscope
+             */
+            comb: components["schemas"]["ParameterCard"][];
+            /**
+             * Tuning
+             * @description electrodes.tuning of a gyroscope
+             */
+            tuning: components["schemas"]["ParameterCard"][];
         };
         /**
          * DiagnosedRecord

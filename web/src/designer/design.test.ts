@@ -8,7 +8,10 @@ import {
   gyroscopeBenchOf,
   isGyroscope,
   newDesign,
+  tableIn,
   valueIn,
+  withFringing,
+  withTable,
 } from "./design";
 
 const device = {
@@ -79,4 +82,37 @@ it("keeps the drawing of a gyroscope and what y has beside it in a table each", 
     geometry: { fingers: 60 },
     drawn_gyroscope: { sense_fingers: 40 },
   });
+});
+
+it("gives a gyroscope an electrode with all its numbers, and takes it away whole", () => {
+  const comb = { bias_v: 10, fingers: 100 };
+  let state = withTable(newDesign("gyro-c"), "electrodes.drive", comb);
+  state = withTable(state, "electrodes.tuning", { gap_um: 3 });
+  expect(designDocument(state).device).toEqual({
+    id: "gyro-c",
+    electrodes: { drive: comb, tuning: { gap_um: 3 } },
+  });
+  expect(tableIn(state, "electrodes.drive")).toEqual(comb);
+  state = withTable(state, "electrodes.drive", undefined);
+  expect(tableIn(state, "electrodes.drive")).toBeUndefined();
+  expect(designDocument(state).device).toEqual({ id: "gyro-c", electrodes: { tuning: { gap_um: 3 } } });
+});
+
+it("drives combs by volts where both axes have them, and tunes where there are plates", () => {
+  const both = { f0_hz: 4000, "gyro.force_x_nn_per_v2": 3, "gyro.force_y_nn_per_v2": 3 };
+  const { scenario } = gyroscopeBenchOf({ device: { electrodes: { drive: {}, tuning: {} } } }, "C", both);
+  expect(scenario).toMatchObject({ drive: { by: "volts" }, plant: { model: "tuned_gyroscope" } });
+  // combs along one axis alone, or combs of the drawing alone, leave the drive by force
+  const { "gyro.force_y_nn_per_v2": _, ...one } = both;
+  for (const [electrodes, metrics] of [[{ drive: {} }, one] as const, [{}, both] as const]) {
+    const plain = gyroscopeBenchOf({ device: { electrodes } }, "C", metrics).scenario;
+    expect(plain).not.toHaveProperty("drive");
+    expect(plain).not.toHaveProperty("plant");
+  }
+});
+
+it("writes the field beyond the fingers as a word, and leaves it out for plates", () => {
+  const state = withFringing(newDesign("lcr-350"), "free");
+  expect(designDocument(state).device).toEqual({ id: "lcr-350", fringing: "free" });
+  expect(designDocument(withFringing(state, "")).device).toEqual({ id: "lcr-350" });
 });

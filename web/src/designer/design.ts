@@ -5,7 +5,7 @@ import { roundTo } from "../ui/unit-scale";
 export interface DesignState {
   id: string;
   /** Values written over the catalogue's, by dotted path below `device`. */
-  changes: Record<string, number>;
+  changes: Record<string, number | string>;
   environment: Record<string, number>;
   /** The geometry of a device drawn from the process. */
   drawn: { seed: number; geometry: Record<string, number> } | undefined;
@@ -23,13 +23,18 @@ export const isGyroscope = (device: Device | undefined): boolean =>
 
 /** The device as a scenario would have it. */
 export function designDocument({ id, changes, environment, drawn }: DesignState): Design {
-  const device: Record<string, unknown> = { id, ...(drawn && { geometry: { ...drawn.geometry } }) };
-  for (const [path, value] of Object.entries(changes)) {
-    const [table, name] = path.split(".");
-    device[table] = name === undefined ? value : { ...(device[table] as object | undefined), [name]: value };
-  }
+  let device: Table = { id, ...(drawn && { geometry: drawn.geometry }) };
+  for (const [path, value] of Object.entries(changes)) device = written(device, path.split("."), value);
   return { device, environment };
 }
+
+type Table = Record<string, unknown>;
+
+/** A table with one value written, however deep. */
+const written = (table: Table, [key, ...below]: string[], value: unknown): Table => ({
+  ...table,
+  [key]: below.length === 0 ? value : written((table[key] ?? {}) as Table, below, value),
+});
 
 /** A design with one value changed, which replaces the value drawn from the process. */
 export function changed(state: DesignState, path: string, value: number, original: number): DesignState {
@@ -43,7 +48,28 @@ export function changed(state: DesignState, path: string, value: number, origina
 
 /** Value in force: changed, drawn, or the catalogue's. */
 export function valueIn(state: DesignState, path: string, original: number): number {
-  return state.changes[path] ?? state.drawn?.geometry[path.replace(/^geometry\./, "")] ?? original;
+  const own = state.changes[path];
+  return typeof own === "number" ? own : (state.drawn?.geometry[path.replace(/^geometry\./, "")] ?? original);
+}
+
+/** A design with values written below a table that the catalogue does not have, or without this table. */
+export function withTable(state: DesignState, table: string, values: Record<string, number> | undefined): DesignState {
+  const others = Object.entries(state.changes).filter(([path]) => !path.startsWith(`${table}.`));
+  const own = Object.entries(values ?? {}).map(([name, value]) => [`${table}.${name}`, value]);
+  return { ...state, changes: Object.fromEntries([...others, ...own]) };
+}
+
+/** The values of a design below a table; undefined without it. */
+export function tableIn({ changes }: DesignState, table: string): Record<string, number> | undefined {
+  const own = Object.entries(changes).filter(([path]) => path.startsWith(`${table}.`));
+  if (own.length === 0) return undefined;
+  return Object.fromEntries(own.map(([path, value]) => [path.slice(table.length + 1), Number(value)]));
+}
+
+/** A design whose comb has the field of a choice; the field of plates alone without one. */
+export function withFringing(state: DesignState, fringing: string): DesignState {
+  const { fringing: _, ...changes } = state.changes;
+  return { ...state, changes: fringing ? { ...changes, fringing } : changes };
 }
 
 /** Value of the catalogue by a dotted path; undefined when the device has none. */
@@ -79,12 +105,20 @@ export function benchOf(design: Design, title: string, metrics: Record<string, n
   };
 }
 
-/** A bench of a gyroscope: force to rebalance at a steady rate, with a read-out of its noise. */
+/**
+ * A bench of a gyroscope: force to rebalance at a steady rate, with a read-out of its noise.
+ *
+ * Combs that the design has are driven by volts, and a tuning electrode has its voltage.
+ */
 export function gyroscopeBenchOf(design: Design, title: string, metrics: Record<string, number>): NewBench {
+  const electrodes = (design.device?.electrodes ?? {}) as Partial<Record<"drive" | "sense" | "tuning", unknown>>;
+  const hasCombs = ["x", "y"].every((axis) => `gyro.force_${axis}_nn_per_v2` in metrics);
   return {
     scenario: {
       title: `Designed: ${title}`,
       source: "device designer",
+      ...((electrodes.drive || electrodes.sense) && hasCombs ? { drive: { by: "volts" } } : {}),
+      ...(electrodes.tuning ? { plant: { model: "tuned_gyroscope" } } : {}),
       sample_rate_khz: sampleRate(metrics),
       device: design.device ?? {},
       environment: design.environment ?? {},

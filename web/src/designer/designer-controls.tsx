@@ -2,8 +2,19 @@ import { Box, NativeSelect } from "@mantine/core";
 import type { Device, DeviceCatalogue } from "../api/types";
 import { Knob } from "../ui/knob";
 import { AIR, AROUND_A_PACKAGE, ENVIRONMENT, type Knob as KnobOf } from "../ui/surroundings";
-import { catalogued, changed, type DesignState, isDrawnGyroscope, isGyroscope, newDesign, valueIn } from "./design";
+import {
+  catalogued,
+  changed,
+  type DesignState,
+  isDrawnGyroscope,
+  isGyroscope,
+  newDesign,
+  valueIn,
+  withFringing,
+} from "./design";
 import styles from "./designer.module.css";
+import { ElectrodeControls } from "./electrode-controls";
+import { COMBS, TUNING } from "./electrodes";
 import { DRAWN_GYROSCOPE, gyroscopeKnobs } from "./gyroscope-knobs";
 import { DRAWING, given } from "./knobs";
 
@@ -22,9 +33,9 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
     if (isGyroscope(device)) return gyroscopeKnobs(base);
     return base("geometry.beam_length_um") === undefined ? given(base) : DRAWING;
   };
-  const turn = (knob: KnobOf, original: number) => {
-    const set = (value: number) => onChange(changed(state, knob.path, value, original));
-    const card = catalogue.geometry.find((p) => `geometry.${p.name}` === knob.path);
+  const write = (path: string, original: number) => (value: number) => onChange(changed(state, path, value, original));
+  const turn = (knob: KnobOf, original: number, set = write(knob.path, original)) => {
+    const card = cardOf(catalogue, knob.path);
     return (
       <Knob
         key={knob.path}
@@ -37,6 +48,17 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
       />
     );
   };
+  const fringing = hasCombOfItsSize(device) && (
+    <NativeSelect
+      label="Field beyond the fingers"
+      value={String(state.changes.fringing ?? "")}
+      data={[
+        { value: "", label: "None: the force of plates" },
+        ...catalogue.fringing.choices.map((value) => ({ value, label: FIELDS[value] ?? value })),
+      ]}
+      onChange={(event) => onChange(withFringing(state, event.currentTarget.value))}
+    />
+  );
   return (
     <section className={`card ${styles.controls}`} aria-label="Knobs">
       <NativeSelect
@@ -51,9 +73,16 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
       {groups().map((group) => (
         <fieldset key={group.title} className={styles.group}>
           <legend>{group.title}</legend>
-          {group.knobs.map((knob) => turn(knob, base(knob.path) ?? defaultOf(catalogue, knob.path)))}
+          {group.knobs.map((knob) => turn(knob, base(knob.path) ?? Number(cardOf(catalogue, knob.path)?.default ?? 0)))}
+          {group.knobs.some(({ path }) => path.endsWith("fingers")) && fringing}
         </fieldset>
       ))}
+      {isGyroscope(device) && (
+        <ElectrodeControls
+          electrodes={isDrawnGyroscope(device) ? [TUNING] : [...COMBS, TUNING]}
+          {...{ state, onChange, turn }}
+        />
+      )}
       <fieldset className={styles.group}>
         <legend>Environment</legend>
         {(isGyroscope(device) ? AROUND_A_PACKAGE : ENVIRONMENT).map((knob) => {
@@ -69,6 +98,27 @@ export function DesignerControls({ catalogue, device, state, onChange }: Designe
 
 const both = (set: (value: number) => void) => ({ onMove: set, onChange: set });
 
-function defaultOf(catalogue: DeviceCatalogue, path: string): number {
-  return Number(catalogue.geometry.find((p) => `geometry.${p.name}` === path)?.default ?? 0);
+const FIELDS: Record<string, string> = {
+  grounded_plane: "Over a grounded plane",
+  free: "Without a plane",
+};
+
+/** Whether the force of a device follows from the sizes of its comb: fringing is contained in a given force. */
+const hasCombOfItsSize = (device: Device) =>
+  !isGyroscope(device) &&
+  catalogued(device, "force_n_per_v") === undefined &&
+  (catalogued(device, "geometry.fingers") ?? catalogued(device, "fingers")) !== undefined;
+
+type Cards = DeviceCatalogue["geometry"];
+
+/** The description of a number of a device, by its dotted path. */
+function cardOf(catalogue: DeviceCatalogue, path: string): Cards[number] | undefined {
+  const tables: [string, Cards][] = [
+    ["geometry.", catalogue.geometry],
+    ["electrodes.drive.", catalogue.comb],
+    ["electrodes.sense.", catalogue.comb],
+    ["electrodes.tuning.", catalogue.tuning],
+  ];
+  const [table, cards] = tables.find(([name]) => path.startsWith(name)) ?? ["", []];
+  return cards.find(({ name }) => table + name === path);
 }

@@ -179,6 +179,47 @@ it("shows the axes of a gyroscope, which no process draws, and puts it on a benc
   });
 });
 
+it("asks for the field beyond the fingers of a comb, in the words of the catalogue's choices", async () => {
+  const { user } = await mountDesigner();
+  const field = screen.getByRole("combobox", { name: "Field beyond the fingers" });
+  expect(within(field).getAllByRole("option")).toHaveLength(1 + devices.fringing.choices.length);
+  await user.selectOptions(field, "Over a grounded plane");
+  await waitFor(() => expect(designs().at(-1)).toEqual({ id: "lcr-350", fringing: "grounded_plane" }));
+  await user.selectOptions(field, "None: the force of plates");
+  await waitFor(() => expect(designs().at(-1)).toEqual({ id: "lcr-350" }));
+  await user.selectOptions(screen.getByRole("combobox", { name: "Device" }), "fabricated-1"); // its force is given
+  expect(screen.queryByRole("combobox", { name: "Field beyond the fingers" })).not.toBeInTheDocument();
+});
+
+it("gives a gyroscope combs and plates by a switch, turns them, and puts them on a bench that is driven by volts", async () => {
+  const combs = { "gyro.force_x_nn_per_v2": 1, "gyro.force_y_nn_per_v2": 1 };
+  const { user, use, set } = await mountDesigner();
+  await user.selectOptions(screen.getByRole("combobox", { name: "Device" }), "gyro-c");
+  expect(screen.queryByRole("textbox", { name: "Gap, as etched, µm" })).not.toBeInTheDocument();
+  for (const name of ["Combs along x", "Combs along y", "Tuning electrode"])
+    await user.click(screen.getByRole("switch", { name }));
+  server.on("POST", "/devices/evaluate", { ...gyroscope, metrics: { ...gyroscope.metrics, ...combs } });
+  await set("Gap, as etched, µm", "2", 2);
+  await set("Fingers per side", "0", 1);
+  expect(screen.getAllByRole("textbox", { name: "Fingers per side" })[1]).toBeInvalid(); // below the catalogue's minimum
+  const comb = { bias_v: 10, fingers: 100, thickness_um: 60, gap_um: 3 };
+  const tuning = { plates: 20, length_um: 400, thickness_um: 60, gap_um: 2 };
+  await waitFor(() =>
+    expect(designs().at(-1)).toEqual({ id: "gyro-c", electrodes: { drive: comb, sense: comb, tuning } }),
+  );
+  await user.click(use());
+  await waitFor(() => expect(server.asked("POST", "/benches")).toHaveLength(1));
+  expect(server.asked("POST", "/benches")[0].body).toMatchObject({
+    scenario: {
+      device: { electrodes: { drive: comb, sense: comb, tuning } },
+      drive: { by: "volts" },
+      plant: { model: "tuned_gyroscope" },
+    },
+  });
+  await user.click(screen.getByRole("switch", { name: "Combs along y" }));
+  await waitFor(() => expect(designs().at(-1)).toEqual({ id: "gyro-c", electrodes: { drive: comb, tuning } }));
+});
+
 it("has no button to use a design for a watcher", async () => {
   be("watcher");
   mount(<Designer />);

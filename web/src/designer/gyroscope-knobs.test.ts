@@ -27,15 +27,17 @@ it("turns by ratios what cannot be 0, and to both sides what can", () => {
   expect(knob("alpha_deg")).toMatchObject({ low: -10, high: 10 });
 });
 
-it("turns the drawing of both axes once each, and no bias, which a force does not have", () => {
+it("turns the drawing of both axes once each, and the bias of the combs of each axis", () => {
   const paths = DRAWN_GYROSCOPE.flatMap((group) => group.knobs.map((k) => k.path));
   expect(new Set(paths).size).toBe(paths.length);
   expect(paths).toContain("geometry.beam_length_um");
   expect(paths).toContain("drawn_gyroscope.sense_beam_length_um");
   expect(paths).not.toContain("bias_v");
+  expect(paths).toContain("electrodes.sense.bias_v");
   const labels = DRAWN_GYROSCOPE.flatMap((group) => group.knobs.map((k) => k.label));
   expect(labels.filter((label) => label.endsWith(" along x")).sort()).toEqual([
     "Beam length along x",
+    "Bias along x",
     "Fingers per side along x",
   ]);
   expect(labels).toContain("Beam width along x, drawn");

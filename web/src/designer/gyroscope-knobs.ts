@@ -65,6 +65,13 @@ export const DRAWN_GYROSCOPE: KnobGroup[] = [
       .map((knob) => ({ ...knob, label: knob.label.replace(/^(Beam \w+|Fingers per side)/, "$1 along x") })),
   })),
   {
+    title: "Combs by volts",
+    knobs: [
+      knob("electrodes.drive.bias_v", "Bias along x", "V", 1, 60, 0.5),
+      knob("electrodes.sense.bias_v", "Bias along y", "V", 1, 60, 0.5),
+    ],
+  },
+  {
     title: "Swing, package and making",
     knobs: [
       drawn("drive_amplitude_um", "Amplitude of x", "um", 0.5, 15, 0.1),

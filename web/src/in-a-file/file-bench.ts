@@ -59,7 +59,7 @@ export class FileBench extends FileBoard<FileDocument> {
     this.reset();
   }
 
-  static async load(code: BufferSource, document: FileDocument): Promise<FileBench> {
+  static async load(code: BufferSource | WebAssembly.Module, document: FileDocument): Promise<FileBench> {
     const boards = [document, ...Object.values(document.twins)];
     const bytes = boards.reduce((sum, board) => sum + BenchArrays.bytes(board), 0);
     return new FileBench(document, await WasmRoom.load(code, bytes));

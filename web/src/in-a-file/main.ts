@@ -21,6 +21,8 @@ import { RunBar } from "./run-bar";
 import { followScheme } from "./scheme";
 import { ScopeView } from "./scope-view";
 import { TimeWindow } from "./time-window";
+import type { TrackDocument } from "./track-document";
+import { TrackView } from "./track-view";
 import { ValueList } from "./value-list";
 
 /** As the page: device time per wall time at first, slower than any eye would need without a pause. */
@@ -34,10 +36,21 @@ const FRAMED = "#frame";
 const textOf = (id: string) => document.getElementById(id)?.textContent ?? "";
 
 async function show(): Promise<void> {
-  const bench = await FileBench.load(
-    await bytesOf(textOf("code")),
-    unpacked<FileDocument>(await bytesOf(textOf("pack"))),
-  );
+  const code = await bytesOf(textOf("code"));
+  const pack = unpacked<FileDocument | TrackDocument>(await bytesOf(textOf("pack")));
+  if ("track" in pack) await showTrack(code, pack);
+  else showBench(await FileBench.load(code, pack));
+}
+
+/** The cases of a track of the benchmark. */
+async function showTrack(code: BufferSource, track: TrackDocument): Promise<void> {
+  const view = new TrackView(await WebAssembly.compile(code), track);
+  document.body.replaceChildren(view.root);
+  followScheme();
+  await view.estimate();
+}
+
+function showBench(bench: FileBench): void {
   const { title, summary, absent, dt_ms: dtMs, version, index, sheet } = bench.document;
   const { diagnosers } = bench;
   teachWords(bench);

@@ -1,6 +1,7 @@
 import { FileBench } from "./file-bench";
 import type { FileCommand, FileDocument } from "./file-document";
 import { bytesOf, unpacked } from "./pack";
+import { TrackRun } from "./track-run";
 
 /** A command for a tick, or how many ticks the bench runs at most. */
 interface Script {
@@ -42,4 +43,4 @@ export async function play(code: string, pack: string, scripts: Script[]) {
   return played;
 }
 
-export { bytesOf, FileBench, unpacked };
+export { bytesOf, FileBench, TrackRun, unpacked };

@@ -1,7 +1,7 @@
 import type { Scheme } from "../ui/palette";
 
 /** Dress the page as the system of the reader is, now and when that changes. */
-export function followScheme(dress: (scheme: Scheme) => void): void {
+export function followScheme(dress: (scheme: Scheme) => void = () => undefined): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const follow = () => {
     const scheme = dark.matches ? "dark" : "light";

@@ -31,8 +31,8 @@ export class WasmRoom {
   }
 
   /** Load code with room for so many bytes of arrays. */
-  static async load(code: BufferSource, bytes: number): Promise<WasmRoom> {
-    const module = await WebAssembly.compile(code);
+  static async load(code: BufferSource | WebAssembly.Module, bytes: number): Promise<WasmRoom> {
+    const module = code instanceof WebAssembly.Module ? code : await WebAssembly.compile(code);
     const pages = Math.ceil((bytes + STACK_BYTES) / PAGE) + 2;
     const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
     const stack = new WebAssembly.Global({ value: "i32", mutable: true }, pages * PAGE);
