@@ -37,7 +37,9 @@ UNITS = {
 """Units that take prefixes: the factor to the base unit, and its name."""
 
 PREFIXES = tuple(zip((1e12, 1e9, 1e6, 1e3, 1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-18), "TGMk mµnpfa", strict=True))
-MAYBE_MICRO, POWER = re.compile("u[msNVg]"), re.compile(r"\b(\d+(?:\.\d+)?)e([-+]?\d+)\b")
+MAYBE_MICRO = re.compile("u[msNVg]")
+POWER = re.compile(r"\b(?=\d{1,3}[.e]|[\d.]+e[-+])(\d+(?:\.\d+)?)e([-+]?\d{1,3})\b")
+"""A number with a power of ten; many digits before one without a sign are a part of an id, such as 96769085e426."""
 _EXACT = Context(prec=100, rounding=ROUND_HALF_UP)
 
 

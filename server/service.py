@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from core.compile.code import borrowed
 from scenarios.arrow import pa
-from scenarios.records.shelf import found_by_benches
+from scenarios.record_folders import found_by_benches
 from server.bench.bench import LiveBench
 from server.bench.benches import Benches
 from server.bench.checkpoints import Checkpoints

@@ -17,13 +17,12 @@ from multiprocessing import forkserver
 from typing import Any, TypeVar
 
 from core.wall import wall
+from scenarios import record_folders
 from scenarios.campaign.progress import Signs, receive, watched
 
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
 LOADED = "scenarios.campaign.loaded"
-INHERITED = ("COMBBENCH_RECORDS",)
-"""Variables that a process takes over with each piece of work; the process it was forked from may be older."""
 T = TypeVar("T")
 
 
@@ -61,7 +60,7 @@ class Processes(Executor):
             place = self._free.popleft()
             self._signs.ticks[place] = self._signs.stop[place] = 0
             try:
-                future = pool.submit(_surrounded, _environment(), place, function, *arguments)
+                future = pool.submit(_with_records, record_folders.folders(), place, function, *arguments)
             except (BrokenProcessPool, OSError, EOFError) as error:
                 self._free.append(place)
                 self._pool = None
@@ -102,15 +101,9 @@ class Processes(Executor):
             self._pool = None
 
 
-def _environment() -> dict[str, str]:
-    return {name: os.environ[name] for name in INHERITED if name in os.environ}
-
-
-def _surrounded(environment: dict[str, str], place: int, function: Callable[..., T], *arguments: object) -> T:
-    """Call a function in the environment of the process that asks for it; in a worker."""
-    for name in INHERITED:
-        os.environ.pop(name, None)
-    os.environ.update(environment)
+def _with_records(folders: list[str], place: int, function: Callable[..., T], *arguments: object) -> T:
+    """Call a function that finds the records of the caller; in a worker, which may be older than these folders."""
+    record_folders.use(folders)
     return watched(place, function, *arguments)
 
 

@@ -17,42 +17,16 @@ import numpy as np
 from core.errors import InputError
 from core.measured_record import MeasuredRecord, PlayedRecord, find_on
 from scenarios.kernel_cache import user_cache
+from scenarios.record_folders import FOLDER, folders
 from scenarios.records import live
 
-FOLDER = "COMBBENCH_RECORDS"
-"""Variable of the environment that names the folder; worker processes inherit it."""
 KEY = "0123456789abcdef"
-_in_use: list[str | None] = []
-"""The folder of before, and the folders of the servers that run in this process."""
-
-
-@contextmanager
-def found_by_benches(folder: Path) -> Iterator[None]:
-    """Let the benches of this process find the records of a server; so do the processes that it starts.
-
-    Of several servers in one process each finds its own; a process finds the records of the newest that runs.
-    """
-    own = str(folder.resolve())
-    if not _in_use:
-        _in_use.append(os.environ.get(FOLDER))
-    _in_use.append(own)
-    os.environ[FOLDER] = own
-    try:
-        yield
-    finally:
-        _in_use.remove(own)
-        if (newest := _in_use[-1]) is None:
-            os.environ.pop(FOLDER, None)
-        else:
-            os.environ[FOLDER] = newest
-        if len(_in_use) == 1:
-            _in_use.clear()
 
 
 class RecordFolder:
     """Records in a folder, which is made when the first is kept.
 
-    Without a path, the records of the servers that run in this process are found too.
+    Without a path it is the first of `folders`, and the records in the others are found too.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -61,9 +35,13 @@ class RecordFolder:
     @property
     def path(self) -> Path:
         """The folder: the given one, the one of the environment, or one in the user's cache."""
+        return self._sought[0]
+
+    @property
+    def _sought(self) -> list[Path]:
         if self._path is not None:
-            return self._path
-        return Path(os.environ.get(FOLDER) or user_cache() / "records")
+            return [self._path]
+        return [*map(Path, folders())] or [user_cache() / "records"]
 
     def get(self, key: str) -> PlayedRecord | None:
         """Return a record, also a record of an instrument; nothing when its file is absent or damaged."""
@@ -71,8 +49,7 @@ class RecordFolder:
             return None
         if record := live.growing(key):
             return record
-        of_servers = [Path(folder) for folder in _in_use[1:] if folder and self._path is None]
-        for folder in (self.path, *of_servers):
+        for folder in self._sought:
             for read, ending in ((_loaded, ".npz"), (live.opened, live.ENDING)):
                 with suppress(OSError, ValueError, KeyError, TypeError, BadZipFile):  # absent, or damaged
                     return read(folder / f"{key}{ending}")

@@ -129,5 +129,8 @@ def test_texts_of_people_are_typeset_and_names_are_left_alone() -> None:
     assert typeset("Beams 0.2 um narrower, h = 20us, a drum") == "Beams 0.2\u00a0µm narrower, h = 20\u00a0µs, a drum"
     assert typeset("beyond 8 um, in um, 3 um/V, uN um") == "beyond 8\u00a0µm, in µm, 3\u00a0µm/V, µN µm"
     assert typeset("Q = R = 1e-4, -0.0002e-6, 0.4242e-6") == "Q = R = 10⁻⁴, -0.0002×10⁻⁶, 0.4242×10⁻⁶"
-    left = "set reference.amplitude_um = 1, tell us, drum, beam 2e, fe80e1"
+    assert typeset("1e6 V, 100.5e12, 20000e-6, 1e+300") == "10⁶ V, 100.5×10¹², 20000×10⁻⁶, 10³⁰⁰"
+    left = (
+        "set reference.amplitude_um = 1, tell us, drum, beam 2e, fe80e1, bench 96769085e426, 123456789e12, 1234e5678…"
+    )
     assert typeset(left) == left

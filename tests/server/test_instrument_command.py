@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from core.measured_record import find_on
 from scenarios import extras
 from scenarios.library import get
-from scenarios.records import shelf
+from scenarios.record_folders import FOLDER
 from scenarios.records.shelf import RecordFolder
 from scenarios.run import build
 from server.cli.main import app
@@ -69,7 +69,7 @@ def files(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def live(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Live]:
-    monkeypatch.setenv(shelf.FOLDER, str(tmp_path / "records"))
+    monkeypatch.setenv(FOLDER, str(tmp_path / "records"))
     with serving(tmp_path, instrument_port=0) as found:
         yield found
     find_on(RecordFolder())

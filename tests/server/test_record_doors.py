@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.measured_record import find_on
-from scenarios.records import shelf
+from scenarios.record_folders import FOLDER
 from scenarios.records.shelf import RecordFolder
 from tests.server.conftest import Live, serving
 from tests.server.instrument import FakeInstrument
@@ -28,7 +28,7 @@ KINDS = ("whole", "growing", "ended")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     folder = tmp_path_factory.mktemp("doors")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(shelf.FOLDER, str(folder / "records"))
+        patch.setenv(FOLDER, str(folder / "records"))
         with serving(folder, instrument_port=0, instrument_samples=SAMPLES + 100) as live:
             yield live
     find_on(RecordFolder())

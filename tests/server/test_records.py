@@ -15,10 +15,12 @@ import pyarrow.parquet as pq
 import pytest
 
 from core.measured_record import MeasuredRecord
+from scenarios import record_folders
+from scenarios.campaign.executor import Processes
 from scenarios.library import get
-from scenarios.records import shelf
+from scenarios.record_folders import FOLDER
 from scenarios.records.bench import on_record
-from scenarios.records.shelf import FOLDER, RecordFolder
+from scenarios.records.shelf import RecordFolder
 from scenarios.run import RunResult, run
 from scenarios.schema import Scenario
 from server.view3d.viewers import device_of
@@ -322,20 +324,26 @@ def test_records_outlive_the_server_and_uploads_under_way_do_not(tmp_path: Path)
         assert second.http.post(f"/api/v1/benches/{bench}/reopen").status_code == 200
 
 
+def has_record(key: str) -> bool:
+    return RecordFolder().get(key) is not None
+
+
 def test_each_of_two_servers_in_a_process_finds_its_records_whichever_ends_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shelf, "_in_use", [])
+    monkeypatch.setattr(record_folders, "_in_use", [])
     monkeypatch.setenv(FOLDER, "before")
     folders = [tmp_path / name for name in ("first", "second")]
     few = [MeasuredRecord(50.0, np.arange(5.0), np.full(5, float(k))) for k in range(2)]
     keys = [RecordFolder(folder).keep(one) for folder, one in zip(folders, few, strict=True)]
-    first, second = map(shelf.found_by_benches, folders)
+    first, second = map(record_folders.found_by_benches, folders)
     first.__enter__()
     second.__enter__()
     assert all(RecordFolder().get(key) for key in keys)
     monkeypatch.setenv(FOLDER, "of another test")
     assert all(RecordFolder().get(key) for key in keys)
+    with Processes(1) as processes:  # a worker finds them too
+        assert all(processes.submit(has_record, key).result() for key in keys)
     first.__exit__(None, None, None)
     assert os.environ[FOLDER] == str(folders[1])
     assert RecordFolder().get(keys[0]) is None and RecordFolder().get(keys[1])

@@ -10,6 +10,7 @@ import pytest
 
 from core.measured_record import MeasuredRecord, find_on
 from scenarios.library import get
+from scenarios.record_folders import FOLDER
 from scenarios.records import shelf
 from scenarios.records.shelf import RecordFolder
 from scenarios.run import RunResult, run
@@ -17,7 +18,7 @@ from scenarios.run import RunResult, run
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RecordFolder]:
-    monkeypatch.setenv(shelf.FOLDER, str(tmp_path / "records"))
+    monkeypatch.setenv(FOLDER, str(tmp_path / "records"))
     yield shelf.prepare()
     find_on(RecordFolder())
 

@@ -21,6 +21,7 @@ import numpy as np
 from core.measured_record import MeasuredRecord
 from core.units import MG_PER_KG
 from scenarios.library import get
+from scenarios.record_folders import FOLDER
 from scenarios.records import shelf
 from scenarios.records.diagnosis import MOST_UNEXPLAINED, UNEXPLAINED, RecordVerdict, diagnose
 from scenarios.records.shelf import RecordFolder
@@ -124,7 +125,7 @@ def _false_fault(one: Foreign, verdicts: Iterable[RecordVerdict]) -> float:
 
 def _job(arguments: tuple[int, str, bool]) -> Judged:
     with tempfile.TemporaryDirectory() as folder:
-        os.environ[shelf.FOLDER] = folder
+        os.environ[FOLDER] = folder
         return judged(*arguments, shelf.prepare())
 
 
