@@ -89,7 +89,7 @@ test("four faults of a gyroscope are injected, found and healed from the page", 
   await page.getByRole("tab", { name: "Angular rate" }).click();
   // beside Why the scope has room for the names alone
   await page.locator(".dv-active-group").getByRole("button", { name: "Fill the page with this panel" }).click();
-  const estimate = () => reading(legend(page, "rate.rate"), "adaptive rate rate");
+  const estimate = () => reading(legend(page, "rate.rate"), "adaptive rate");
   await later(server, async () => Math.abs((await estimate()) - TRUE_DEG_S)).toBeLessThan(50);
   await expect(page.getByTestId("bench-state")).toHaveText("running");
 });

@@ -94,13 +94,19 @@ const widthOf = (api: DockviewApi): number => api.width || window.innerWidth;
 
 const isWide = (api: DockviewApi): boolean => widthOf(api) >= THREE_COLUMNS_PX;
 
-/** Lay a built-in layout out as it is kept for as many columns as the dock has room for now; views in front stay there. */
+/**
+ * Lay a built-in layout out as it is kept for as many columns as the dock has room for now.
+ *
+ * The views in front stay there, and each panel keeps its settings, such as the trigger of a scope.
+ */
 function fitColumns(): void {
   const api = dockNow();
   const { layout } = useView.getState();
   if (!api?.width || isWide(api) === wide || !isBuiltIn(layout)) return;
   const front = inFront();
+  const settings = api.panels.map(({ id, params }) => ({ id, params }));
   arrange(layout);
+  for (const { id, params } of settings) if (params) api.getPanel(id)?.api.updateParameters(params);
   bringBack(front);
 }
 
