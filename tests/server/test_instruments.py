@@ -14,7 +14,6 @@ import pytest
 
 from core.measured_record import MeasuredRecord, find_on
 from scenarios.library import get
-from scenarios.record_folders import FOLDER
 from scenarios.records import live
 from scenarios.records.bench import on_record
 from scenarios.records.shelf import RecordFolder
@@ -32,7 +31,7 @@ SAMPLES = 1500
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     folder = tmp_path_factory.mktemp("instruments")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(FOLDER, str(folder / "records"))
+        patch.setenv("COMBBENCH_RECORDS", str(folder / "records"))
         with serving(folder, instrument_port=0, instrument_samples=20_000) as live:
             yield live
     find_on(RecordFolder())

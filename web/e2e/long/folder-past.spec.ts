@@ -1,5 +1,5 @@
 import { expect, test } from "../folder-host";
-import { front, pictureOf, SCOPE_CANVAS } from "../lab";
+import { openPanel, pictureOf, SCOPE_CANVAS } from "../lab";
 
 test("in a folder the timeline goes back, a branch begins there, and the other future is drawn behind it", async ({
   page,
@@ -28,7 +28,7 @@ test("in a folder the timeline goes back, a branch begins there, and the other f
   await expect(state).toHaveText("running");
   await timeline.getByRole("button", { name: "The other future" }).click();
   await expect(state).toHaveText("running");
-  await front(page, "Log");
+  await openPanel(page, "Log");
   await expect(page.getByText(/^inject added_mass/)).toBeVisible();
 });
 
