@@ -1,6 +1,6 @@
 import type { Locator, Page } from "@playwright/test";
 import { chooseTool, expect, openPanel, test } from "../lab";
-import { SCREENS, showOn } from "../screens";
+import { isPhone, SCREENS, showOn } from "../screens";
 
 /** Parts that a scope lacks at first sight: its axis of time, one row of names, traces that fill it. */
 const lacks = (scope: Locator): Promise<string[]> =>
@@ -54,6 +54,7 @@ test("the strip of captures has room on every screen", async ({ page, openBench 
   await chooseTool(scope, /^Trigger/);
   for (const screen of SCREENS) {
     await showOn(page, screen);
+    if (isPhone(screen)) await chooseTool(scope, /^Trigger/); // a phone has a scope of its own
     const strip = scope.getByRole("group", { name: "Captures", exact: true });
     await expect(strip).toBeVisible();
     await expect.poll(() => strip.evaluate((box) => box.scrollWidth <= box.clientWidth)).toBe(true);
