@@ -112,7 +112,7 @@ def made(function: FunctionType, kinds: Kinds) -> Callable[..., Any]:
     """Return what Python calls: the function compiled for arguments of some kinds."""
     address = loaded(piece(function, kinds).kept())
     definition = _Definition(function.__name__.encode(), address, FASTCALL, None)
-    _keep(definition)  # for ever: the interpreter reads it while it ends, when the names of this module are gone
+    _keep(definition)  # never freed: an interpreter that ends reads it after the names of this module are dropped
     return _new(ctypes.byref(definition), None, None)  # type: ignore[no-any-return]
 
 

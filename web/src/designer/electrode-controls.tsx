@@ -13,7 +13,7 @@ interface ElectrodeControlsProps {
   turn(knob: Knob, original: number, set: (value: number) => void): ReactNode;
 }
 
-/** The electrodes that a gyroscope may have: a switch each, and its knobs while it is there. */
+/** A switch for each electrode that a gyroscope may have, and its knobs while the switch is on. */
 export function ElectrodeControls({ electrodes, state, onChange, turn }: ElectrodeControlsProps) {
   return electrodes.map(({ table, title, knobs, first }) => {
     const values = tableIn(state, table);
