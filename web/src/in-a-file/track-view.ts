@@ -1,4 +1,4 @@
-import { formatCount, formatSi } from "../ui/format";
+import { formatCount, formatNumber, formatSi } from "../ui/format";
 import { button, element, write } from "./dom";
 import type { TrackDocument, TrackRow } from "./track-document";
 import { TrackRun } from "./track-run";
@@ -60,7 +60,8 @@ export class TrackView {
     const here = element("td");
     this.cells.set(unit, here);
     const own = element("code", { title: digest }, `${digest.slice(0, SHOWN_OF_DIGEST)}…`);
-    const figures = [element("td", {}, title), element("td", {}, score?.toFixed(3) ?? ""), element("td", {}, own)];
+    const scored = score === null ? "" : formatNumber(score, 3);
+    const figures = [element("td", {}, title), element("td", {}, scored), element("td", {}, own)];
     return element("tr", {}, ...figures, here);
   }
 
