@@ -1,7 +1,7 @@
 r"""Calibration: the device behind a healthy stretch of a record, and whether a mass, a damper and a spring explain it.
 
-Fitted on one half, tested on the other. Only ratios to the force follow from voltage and displacement: a gain of the
-sensor and the force of the comb are one number, and so the force stays nominal.
+Fitted on one half, tested on the other; the numbers are then fitted to both. Only ratios to the force follow from
+voltage and displacement: a gain of the sensor and the force of the comb are one number, so the force stays nominal.
 """
 
 from __future__ import annotations
@@ -15,15 +15,23 @@ from core.block import Oscillator
 from core.errors import InputError
 from core.measured_record import MeasuredRecord
 from scenarios.records.columns import Numbers
-from scenarios.records.fit import SKIPPED, Fit, fit, remainder
+from scenarios.records.effects import effects
+from scenarios.records.fit import SKIPPED, Fit, fit
 from scenarios.records.misfits import CHECKS, Check, Halves
+from scenarios.records.remainder import remainder
 
 LEAST = 400
 """Least samples of a healthy stretch."""
 MOST = 40_000
 """Most samples of a healthy stretch that are read."""
-UNCERTAIN = {"mass": 0.02, "stiffness": 0.02, "damping": 0.1}
+UNCERTAIN = {"mass": 0.014, "stiffness": 0.014, "damping": 0.07}
 """Largest standard errors over the values; hypotheses are 5 and 30 % apart."""
+PULLED = {"mass": 0.01, "stiffness": 0.01, "damping": 0.05}
+"""Largest changes of the values by an effect that is not of chance."""
+CHANCE = 1e-4
+"""Probability below which an effect is not of chance."""
+RATIOS = {"mass": (0, 0, 0, -1, 0), "damping": (0, 1, 0, -1, 0), "stiffness": (1, 0, 0, -1, 0)}
+"""Logarithms of these numbers by the numbers of a fit, at the nominal force."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +86,7 @@ def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: 
     Raises
     ------
     InputError
-        For a stretch that is too short, or a voltage that does not move.
+        For a stretch that is too short, or a voltage or displacement that does not move.
     """
     end = record.samples if end is None else end
     if not 0 <= first < end <= record.samples:
@@ -90,13 +98,20 @@ def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: 
     if np.ptp(drive) == 0.0:
         raise InputError("the voltage does not move in this stretch", "healthy", "choose another, or excite the device")
     dt_ms, half = 1.0 / record.rate_khz, (end - first) // 2
+    if len(np.unique(displacement[SKIPPED:half][np.isfinite(displacement[SKIPPED:half])])) < 2:
+        text = "the displacement does not move in the first half of this stretch"
+        raise InputError(text, "healthy", "choose another")
     shape = nominal.stiffness / nominal.mass, nominal.damping / nominal.mass
     found = fit(drive[:half], displacement[:half], dt_ms, *shape)
     later = remainder(found, drive[half - SKIPPED :], displacement[half - SKIPPED :], dt_ms)
-    halves = Halves(found, *later, drive, displacement, dt_ms)
+    halves = Halves(found, later, drive, displacement, dt_ms)
     checks = [check(halves) for check in CHECKS]
+    refusal = next((one.sentence for one in checks if not one.ok), "")
+    if not refusal:
+        found = fit(drive, displacement, dt_ms, *shape, near=found)
+        checks.append(_pulled(found, drive, dt_ms))
+        refusal = checks[-1].sentence
     estimates = _estimates(found, nominal)
-    refusal = next((one.sentence for one in checks if not one.ok), "") or _uncertain(estimates)
     return Calibration(
         **estimates,
         noise_um=found.noise,
@@ -104,7 +119,7 @@ def calibrate(record: MeasuredRecord, nominal: Oscillator, first: int = 0, end: 
         first=first,
         samples=end - first,
         checks=checks,
-        refusal=refusal,
+        refusal=refusal or _uncertain(estimates),
     )
 
 
@@ -116,11 +131,9 @@ def _estimates(found: Fit, nominal: Oscillator) -> dict[str, FittedNumber]:
     mass = abs(nominal.force / found.gain) / nominal.mass
     damping = found.damping * mass * nominal.mass / nominal.damping
     stiffness = found.stiffness * mass * nominal.mass / nominal.stiffness
-    # logarithms: of the mass -gain, of the damping damping - gain, of the stiffness stiffness - gain
-    rows = {"mass": (0, 0, 0, -1, 0), "damping": (0, 1, 0, -1, 0), "stiffness": (1, 0, 0, -1, 0)}
     values = {"mass": mass, "damping": damping, "stiffness": stiffness}
-    errors = {name: math.sqrt(_variance(np.array(row, float), found.covariance)) for name, row in rows.items()}
-    ratios = {name: FittedNumber(values[name], values[name] * errors[name]) for name in rows}
+    errors = {name: math.sqrt(_variance(np.array(row, float), found.covariance)) for name, row in RATIOS.items()}
+    ratios = {name: FittedNumber(values[name], values[name] * errors[name]) for name in RATIOS}
     sizes = np.sqrt(np.diag(found.covariance))
     return {
         **ratios,
@@ -131,6 +144,20 @@ def _estimates(found: Fit, nominal: Oscillator) -> dict[str, FittedNumber]:
 
 def _variance(row: Numbers, covariance: Numbers) -> float:
     return float(row @ covariance @ row)
+
+
+def _pulled(found: Fit, drive: Numbers, dt_ms: float) -> Check:
+    """Look for an effect that explains little of the motion, but would make other numbers of the device."""
+    worst, sentence = 0.0, ""
+    for effect in effects(found, drive, dt_ms):
+        for name, most in PULLED.items() if effect.chance < CHANCE else ():
+            change = float(np.array(RATIOS[name]) @ effect.pull[:5])
+            if abs(change) / most > worst:
+                worst = abs(change) / most
+                size = f"{100.0 * change:+.0f} %" if abs(change) < 1.0 else "more than 100 %"
+                sentence = f"the motion shows {effect.name}, which would change the {name} by {size}"
+    ok = worst <= 1.0
+    return Check("pulled", worst, 1.0, ok, "" if ok else sentence)
 
 
 def _uncertain(estimates: dict[str, FittedNumber]) -> str:

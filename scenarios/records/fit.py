@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,10 +35,14 @@ BEGUN = 600
 """Samples by which starts are compared."""
 REFINED = 3
 """The best starts that are refined."""
-STEP = 1e-5
-"""Change of a delay for a difference, in samples."""
+LOWEST, HIGHEST = (-np.inf, -np.inf, 0.0), (np.inf, np.inf, float(MOST_DELAY))
+"""Bounds of the searched numbers: logarithms of stiffness and damping, and the delay."""
+STEPS = (1e-6, 1e-5, 1e-5)
+"""Changes of these for a difference."""
 SKIPPED = MOST_DELAY + 1
 """First samples whose voltage may have come before the record."""
+NO_ZERO = 1e-100
+"""Is added to sizes that may be zero: a number that the record does not tell then has a huge variance, not none."""
 
 
 @dataclass(frozen=True)
@@ -54,16 +59,19 @@ class Fit:
         Of the voltage on the acceleration, um/(ms^2 V).
     offset : float
         um.
-    covariance : array, shape (5, 5)
-        Of the logarithms of stiffness and damping, the delay, the logarithm of the gain, and the offset.
+    variance : float
+        Of the noise, um^2.
+    spread : array, shape (5, 5)
+        Covariance over ``variance`` of the logarithms of stiffness and damping, the delay, the logarithm of the gain,
+        and the offset.
     known : array of bool, shape (samples,)
         Which samples were measured.
     residual : array, shape (known samples,)
         Measured minus fitted displacement, um.
     motion : array, shape (samples,)
         The fitted displacement without offset, at lost samples too, um.
-    seen : array, shape (known samples, 7)
-        An orthonormal basis of the changes of the output that a change of the numbers makes.
+    jacobian : array, shape (known samples, 7)
+        Change of the output with each number: as ``spread`` has them, then first displacement and velocity.
     """
 
     stiffness: float
@@ -71,16 +79,37 @@ class Fit:
     delay: float
     gain: float
     offset: float
-    covariance: Numbers = field(repr=False)
+    variance: float
+    spread: Numbers = field(repr=False)
     known: NDArray[np.bool_] = field(repr=False)
     residual: Numbers = field(repr=False)
     motion: Numbers = field(repr=False)
-    seen: Numbers = field(repr=False)
+    jacobian: Numbers = field(repr=False)
 
-    def unseen(self, shape: Numbers) -> Numbers:
-        """Return the part of columns, of all samples, that no number of the fit could take up, at known samples."""
-        there = shape[self.known]
-        return there - self.seen @ (self.seen.T @ there)
+    @property
+    def covariance(self) -> Numbers:
+        """Covariance of the numbers, as ``spread`` has them."""
+        return self.variance * self.spread
+
+    @property
+    def searched(self) -> Numbers:
+        """The numbers that are searched: logarithms of stiffness and damping, and the delay."""
+        return np.array([math.log(self.stiffness), math.log(self.damping), self.delay])
+
+    @cached_property
+    def _scaled(self) -> tuple[Numbers, Numbers, Numbers]:
+        scale = np.sqrt(np.sum(self.jacobian**2, axis=0)) + NO_ZERO
+        return scale, *np.linalg.qr(self.jacobian / scale)
+
+    def unseen(self, columns: Numbers) -> Numbers:
+        """Return the part of columns, of the known samples, that no number of the fit could take up."""
+        _, seen, _ = self._scaled
+        return np.asarray(columns - seen @ (seen.T @ columns))
+
+    def taken_up(self, column: Numbers) -> Numbers:
+        """Return the changes of all numbers that come closest to a change of the output, at known samples."""
+        scale, seen, triangle = self._scaled
+        return np.asarray(np.linalg.lstsq(triangle, seen.T @ column)[0] / scale)
 
     def pushed(self, force: Numbers, dt_ms: float) -> Numbers:
         """Return the displacement under an acceleration that is held at every sample, from rest."""
@@ -135,10 +164,30 @@ def response(phi: Numbers, push: Numbers, force: Numbers) -> Numbers:
     return np.asarray(lfilter(_numerator(phi, push), _denominator(phi), force), dtype=np.float64)
 
 
-def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, damping: float) -> Fit:
+def slopes(numbers: Numbers, weights: Numbers, drive: Numbers, dt_ms: float) -> Numbers:
+    """Return the change of the output with each of the searched numbers, one column for each.
+
+    ``weights`` are of the responses: gain, first displacement and velocity, offset.
+    """
+
+    def output(of: Numbers) -> Numbers:
+        return responses(math.exp(of[0]), math.exp(of[1]), of[2], drive, dt_ms) @ weights
+
+    here, columns = output(numbers), []
+    for i, step in enumerate(STEPS):
+        moved = numbers.copy()
+        moved[i] += step if numbers[i] + step <= HIGHEST[i] else -step
+        columns.append((output(moved) - here) / (moved[i] - numbers[i]))
+    return np.column_stack(columns)
+
+
+def fit(
+    drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, damping: float, near: Fit | None = None
+) -> Fit:
     """Return the fit; stiffness and damping over mass of the nominal device are where the search begins.
 
-    A displacement that is no number is left out.
+    A displacement that is no number is left out. The search begins at the fit to a part of the record instead, where
+    one is given.
     """
     known = np.isfinite(displacement[SKIPPED:])
     y = displacement[SKIPPED:][known]
@@ -159,17 +208,17 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
         left = solved(numbers, BEGUN)[0]
         return float(left @ left)
 
-    starts = [
-        np.array([math.log(stiffness) + more, math.log(damping) + slower, delay])
-        for more in STIFFNESSES
-        for slower in DAMPINGS
-        for delay in DELAYS
-    ]
+    starts = [near.searched] if near else _starts(math.log(stiffness), math.log(damping))
     starts.sort(key=begun)
-    bounds = ([-np.inf, -np.inf, 0.0], [np.inf, np.inf, float(MOST_DELAY)])
     found = [
         least_squares(
-            residual, start, bounds=bounds, x_scale=(0.01, 0.1, 0.5), diff_step=np.array(1e-6), xtol=1e-12, ftol=1e-12
+            residual,
+            start,
+            bounds=(LOWEST, HIGHEST),
+            x_scale=(0.01, 0.1, 0.5),
+            diff_step=np.array(1e-6),
+            xtol=1e-12,
+            ftol=1e-12,
         )
         for start in starts[:REFINED]
     ]
@@ -178,49 +227,33 @@ def fit(drive: Numbers, displacement: Numbers, dt_ms: float, stiffness: float, d
     left, weights, basis = solved(numbers)
     gain = float(weights[0])
     whole = responses(math.exp(numbers[0]), math.exp(numbers[1]), numbers[2], drive, dt_ms)
-    # the whole Jacobian: three numbers by differences with the linear ones held, and the linear ones by their columns
     jacobian = np.empty((len(y), 7))
-    for i, step in enumerate((1e-6, 1e-5, 1e-5)):
-        moved = numbers.copy()
-        moved[i] += step if numbers[i] + step <= bounds[1][i] else -step
-        other = responses(math.exp(moved[0]), math.exp(moved[1]), moved[2], drive, dt_ms)[known]
-        jacobian[:, i] = (other - basis) @ weights / (moved[i] - numbers[i])
+    jacobian[:, :3] = slopes(numbers, weights, drive, dt_ms)[known]
     jacobian[:, 3], jacobian[:, 4:] = gain * basis[:, 0], basis[:, [3, 1, 2]]
-    scale = np.sqrt(np.sum(jacobian**2, axis=0)) + 1e-300
+    scale = np.sqrt(np.sum(jacobian**2, axis=0)) + NO_ZERO
     sizes, directions = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
-    # a direction that the record does not tell has a large variance, and not none
+    # so has a direction that the record does not tell
     inverse = directions / np.maximum(sizes, 1e-14) @ directions.T / np.outer(scale, scale)
-    variance = float(left @ left) / max(len(y) - 7, 1)
+    variance = float(left @ left) / max(len(y) - 7, 1) + NO_ZERO
     return Fit(
         stiffness=math.exp(numbers[0]),
         damping=math.exp(numbers[1]),
         delay=float(numbers[2]),
         gain=gain,
         offset=float(weights[3]),
-        covariance=variance * inverse[:5, :5],
+        variance=variance,
+        spread=inverse[:5, :5],
         known=known,
         residual=left,
         motion=whole[:, :3] @ weights[:3],
-        seen=np.linalg.qr(jacobian / scale)[0],
+        jacobian=jacobian,
     )
 
 
-def remainder(found: Fit, drive: Numbers, displacement: Numbers, dt_ms: float) -> tuple[Numbers, float, float]:
-    """Return the residual on another stretch, the delay that it misses in samples, and the error of this delay.
-
-    The first motion of the stretch is fitted, and no number of the device.
-    """
-    basis, later = (
-        responses(found.stiffness, found.damping, delay, drive, dt_ms) for delay in (found.delay, found.delay + STEP)
-    )
-    known = np.isfinite(displacement[SKIPPED:])
-    begun, _ = np.linalg.qr(basis[known][:, 1:3])
-
-    def moved(columns: Numbers) -> Numbers:
-        return columns - begun @ (begun.T @ columns)
-
-    left = moved(displacement[SKIPPED:][known] - found.gain * basis[known, 0] - found.offset)
-    slope = moved(found.gain * (later - basis)[known, 0] / STEP)
-    size = float(slope @ slope)
-    missed = float(left @ slope) / size if size > 0.0 else 0.0
-    return left, missed, float(np.sqrt(np.mean(left**2) / size)) if size > 0.0 else math.inf
+def _starts(stiffness: float, damping: float) -> list[Numbers]:
+    return [
+        np.array([stiffness + more, damping + slower, delay])
+        for more in STIFFNESSES
+        for slower in DAMPINGS
+        for delay in DELAYS
+    ]

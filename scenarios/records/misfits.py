@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from scenarios.records.columns import Numbers
-from scenarios.records.fit import SKIPPED, Fit, response, transition
+from scenarios.records.effects import effects
+from scenarios.records.fit import Fit
+from scenarios.records.remainder import Remainder
 
 CLIPPED = 0.005
 """Share of samples at an extreme value for which a converter counts as clipped."""
@@ -29,8 +30,6 @@ DRIFT = 0.1
 """Largest change of the delay between the halves, in samples."""
 NAMED = 0.3
 """Share of the residual's power that an effect must explain to be named as the reason."""
-MODES = tuple(np.geomspace(0.3, 8.0, 60).tolist())
-"""Second modes that are looked for, over the frequency of the device."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +45,10 @@ class Check:
 
 @dataclass
 class Halves:
-    """The fit on the first half of a stretch; on the second its residual, and the delay it misses with an error."""
+    """The fit on the first half of a stretch, and its remainder on the second."""
 
     fitted: Fit
-    later: Numbers = field(repr=False)
-    missed_delay: float
-    delay_error: float
+    later: Remainder
     drive: Numbers = field(repr=False)
     displacement: Numbers = field(repr=False)
     dt_ms: float
@@ -81,7 +78,7 @@ class Halves:
     @cached_property
     def reason(self) -> str:
         """The effect that explains most of a residual that is no noise, in words; empty if it explains little."""
-        share, name = max((_explained(self.fitted, shape), name) for name, shape in _effects(self))
+        share, name = max((one.share, one.name) for one in effects(self.fitted, self.drive, self.dt_ms))
         if share < NAMED:
             return ""
         return f"{name} explains {100.0 * share:.0f} % of the motion that mass, damper and spring leave unexplained"
@@ -116,7 +113,7 @@ def _is_resting(halves: Halves) -> bool:
 def growth(halves: Halves) -> Check:
     """Compare the residual of the half that was not fitted with the other half."""
     floor = max(halves.fitted.noise, halves.rounding)
-    ratio = float(np.sqrt(np.mean(halves.later**2))) / floor if floor > 0.0 else math.inf
+    ratio = halves.later.size / floor if floor > 0.0 else math.inf
     ok = ratio <= GROWN
     return Check(
         "residual_ratio", ratio, GROWN, ok, "" if ok else _because(halves, f"its error grows {ratio:.1f} times")
@@ -126,8 +123,8 @@ def growth(halves: Halves) -> Check:
 def whiteness(halves: Halves) -> Check:
     """Look for correlation of the residuals, beyond chance and beyond the rounding of the converter."""
     fitted, later = halves.fitted, halves.later_known
-    worst = max(_correlation(fitted.residual, fitted.known), _correlation(halves.later, later))
-    limit = max(ALIKE, STEEP / math.sqrt(len(halves.later) * later.mean()))  # by how many pairs are known
+    worst = max(_correlation(fitted.residual, fitted.known), _correlation(halves.later.residual, later))
+    limit = max(ALIKE, STEEP / math.sqrt(len(halves.later.residual) * later.mean()))  # by how many pairs are known
     is_rounding = halves.fitted.noise <= 1.1 * halves.rounding
     ok = worst <= limit or is_rounding
     return Check("correlation", worst, limit, ok, "" if ok else _because(halves, "its errors follow each other"))
@@ -150,7 +147,7 @@ def _correlation(residual: Numbers, known: NDArray[np.bool_]) -> float:
 
 def drift(halves: Halves) -> Check:
     """Look for a delay on the half that was not fitted which is another than on the fitted half."""
-    change, limit = abs(halves.missed_delay), max(DRIFT, STEEP * halves.delay_error)
+    change, limit = abs(halves.later.missed_delay), max(DRIFT, STEEP * halves.later.delay_error)
     ok = change <= limit
     sentence = "" if ok else f"the delay drifts by {change:.1f} samples in this stretch"
     return Check("delay_change", change, limit, ok, sentence)
@@ -159,46 +156,6 @@ def drift(halves: Halves) -> Check:
 def _because(halves: Halves, found: str) -> str:
     """Return the sentence for a residual that is no noise: its reason, or else the finding."""
     return halves.reason or f"a mass, a damper and a spring do not explain the motion: {found}"
-
-
-def _effects(halves: Halves) -> Iterator[tuple[str, Numbers]]:
-    """Return effects beside mass, damper and spring, each with the residuals that it would leave, of any size.
-
-    They are computed at all samples, because the device moves on while samples are lost.
-    """
-    fitted, dt_ms = halves.fitted, halves.dt_ms
-    x = fitted.motion
-    v = np.gradient(x, dt_ms)
-    yield "a drift of the offset", np.arange(len(x), dtype=np.float64)[:, None]
-    yield "friction", fitted.pushed(np.sign(v), dt_ms)[:, None]
-    yield "a nonlinear spring", fitted.pushed(x**3, dt_ms)[:, None]
-    for part in (0.6, 0.75, 0.9):
-        over = np.maximum(np.abs(x) - part * np.abs(x).max(), 0.0)
-        yield "saturation of the displacement", (np.sign(x) * over)[:, None]
-    slow = math.sqrt(fitted.stiffness)
-    for ratio in (0.25, 0.5, 1.0, 2.0, 4.0):
-        filtered = lfilter([1.0 - math.exp(-ratio * slow * dt_ms)], [1.0, -math.exp(-ratio * slow * dt_ms)], x)
-        yield "a filter behind the motion, a model of higher order", np.asarray(filtered, np.float64)[:, None]
-    drive = halves.drive[SKIPPED : SKIPPED + len(x)]
-    for ratio in MODES:
-        stiffness = (ratio * slow) ** 2
-        phi, push = transition(stiffness, 0.05 * ratio * slow, dt_ms)
-        moved = response(phi, push, drive)
-        yield (
-            f"a second mode near {ratio * slow / (2.0 * math.pi):.2g} kHz",
-            np.stack([moved, np.gradient(moved, dt_ms)], 1),
-        )
-
-
-def _explained(fitted: Fit, shape: Numbers) -> float:
-    """Return the share of the residual's power that has one of these shapes, beyond the numbers of the fit."""
-    left = fitted.residual
-    size = np.sqrt(np.sum(shape**2, axis=0))
-    if not np.all(size > 0.0):
-        return 0.0
-    free = fitted.unseen(shape / size)
-    weights = np.linalg.lstsq(free, left)[0]
-    return float(1.0 - np.sum((left - free @ weights) ** 2) / np.sum(left**2))
 
 
 CHECKS: tuple[Callable[[Halves], Check], ...] = (clipping, drift, growth, whiteness)

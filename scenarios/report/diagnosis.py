@@ -33,6 +33,7 @@ CHECKS = {
     "delay_change": "change of the delay, samples",
     "residual_ratio": "error over the error of the fitted half",
     "correlation": "correlation of errors",
+    "pulled": "change of a number by a hidden effect, over its limit",
 }
 OTHER = {UNEXPLAINED: LineStyle(0), UNSURE: LineStyle(7)}
 """Looks of verdicts that are no hypothesis."""

@@ -12,8 +12,10 @@ from core.measured_record import MeasuredRecord
 from scenarios.library import get
 from scenarios.records.calibration import calibrate
 from scenarios.records.diagnosis import UNEXPLAINED, diagnose
+from scenarios.records.fit import fit
 from scenarios.records.shelf import RecordFolder
-from tests.scenarios.records.foreign import DT, HEALTHY, NAMES, OUTSIDE, Foreign, draw
+from tests.scenarios.records.foreign import DT, HEALTHY, NAMES, OTHERS, OUTSIDE, Foreign, draw, other_nominal
+from tests.scenarios.records.study import bench_of
 
 
 def record_of(one: Foreign) -> MeasuredRecord:
@@ -101,6 +103,41 @@ def test_a_voltage_that_rests_is_refused() -> None:
     rest = MeasuredRecord(50.0, np.zeros(1000), np.random.default_rng(1).normal(0, 0.01, 1000))
     with pytest.raises(InputError, match="does not move"):
         calibrate(rest, get("first-look").spec.nominal)
+
+
+@pytest.mark.parametrize("moves", [[0.0, 0.0], [0.0, 1.0], [np.nan, 1.0]], ids=["never", "late", "lost"])
+def test_a_displacement_that_rests_in_the_first_half_is_refused(moves: list[float]) -> None:
+    rests = MeasuredRecord(50.0, np.random.default_rng(1).normal(size=4000), np.repeat(moves, 2000))
+    with pytest.raises(InputError, match="the displacement does not move in the first half"):
+        calibrate(rests, get("first-look").spec.nominal)
+
+
+def test_a_slow_chirp_whose_first_half_ends_below_the_resonance_is_no_reason_against_the_model() -> None:
+    """The first half knows little of the resonance in the second, and the refusal has to allow for that."""
+    for seed in range(40, 46):
+        nominal = other_nominal(seed)
+        one = draw(seed, nominal=nominal, excitations=("slow chirp",))
+        record = MeasuredRecord(1.0 / nominal.dt, one.drive.copy(), one.displacement.copy())
+        found = calibrate(record, bench_of(nominal).spec.nominal, 0, HEALTHY)
+        assert not found.refusal, (seed, found.refusal)
+
+
+def test_the_numbers_are_fitted_to_both_halves() -> None:
+    record, nominal = record_of(draw(1)), get("first-look").spec.nominal
+    shape = DT, nominal.stiffness / nominal.mass, nominal.damping / nominal.mass
+    half = fit(record.drive[: HEALTHY // 2], record.displacement[: HEALTHY // 2], *shape)
+    mass = calibrate(record, nominal, 0, HEALTHY).mass
+    assert mass.error / mass.value < 0.85 * np.sqrt(half.covariance[3, 3])
+
+
+@pytest.mark.parametrize(("seed", "outside"), [(2712856665, "second mode"), (2712856656, "stiction")])
+def test_an_effect_that_leaves_little_but_pulls_the_numbers_is_refused(seed: int, outside: str) -> None:
+    nominal = other_nominal(seed)
+    one = draw(seed, outside, nominal=nominal, excitations=OTHERS)
+    record = MeasuredRecord(1.0 / nominal.dt, one.drive.copy(), one.displacement.copy())
+    found = calibrate(record, bench_of(nominal).spec.nominal, 0, HEALTHY)
+    assert [check.name for check in found.checks if not check.ok] == ["pulled"]
+    assert re.search(r"the motion shows .*, which would change the (stiffness|damping) by", found.refusal)
 
 
 @pytest.mark.long

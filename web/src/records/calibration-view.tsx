@@ -8,6 +8,7 @@ const CHECKS: Record<string, string> = {
   delay_change: "Change of the delay, in samples",
   residual_ratio: "Error on the half that was not fitted, over the fitted half",
   correlation: "Correlation of the errors",
+  pulled: "Change of a number by a hidden effect, over its limit",
 };
 const ROWS = [
   { name: "mass", label: "Mass over nominal", decimals: 4, unit: "" },
