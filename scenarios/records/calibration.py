@@ -7,6 +7,7 @@ voltage and displacement: a gain of the sensor and the force of the comb are one
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,8 +28,9 @@ MOST = 40_000
 UNCERTAIN = {"mass": 0.014, "stiffness": 0.014, "damping": 0.07}
 """Largest standard errors over the values; hypotheses are 5 and 30 % apart."""
 PULLED = {"mass": 0.01, "stiffness": 0.01, "damping": 0.05}
-"""Largest changes of the values by an effect that is not of chance."""
-CHANCE = 1e-4
+"""Largest changes of the values by an effect that is not of chance, unless they are within ``FEW`` standard errors."""
+FEW = 3.5
+CHANCE = 5e-5
 """Probability below which an effect is not of chance."""
 RATIOS = {"mass": (0, 0, 0, -1, 0), "damping": (0, 1, 0, -1, 0), "stiffness": (1, 0, 0, -1, 0)}
 """Logarithms of these numbers by the numbers of a fit, at the nominal force."""
@@ -132,8 +134,7 @@ def _estimates(found: Fit, nominal: Oscillator) -> dict[str, FittedNumber]:
     damping = found.damping * mass * nominal.mass / nominal.damping
     stiffness = found.stiffness * mass * nominal.mass / nominal.stiffness
     values = {"mass": mass, "damping": damping, "stiffness": stiffness}
-    errors = {name: math.sqrt(_variance(np.array(row, float), found.covariance)) for name, row in RATIOS.items()}
-    ratios = {name: FittedNumber(values[name], values[name] * errors[name]) for name in RATIOS}
+    ratios = {name: FittedNumber(values[name], values[name] * _error(row, found)) for name, row in RATIOS.items()}
     sizes = np.sqrt(np.diag(found.covariance))
     return {
         **ratios,
@@ -142,15 +143,17 @@ def _estimates(found: Fit, nominal: Oscillator) -> dict[str, FittedNumber]:
     }
 
 
-def _variance(row: Numbers, covariance: Numbers) -> float:
-    return float(row @ covariance @ row)
+def _error(row: Sequence[int], found: Fit) -> float:
+    """Return the standard error of a logarithm."""
+    return math.sqrt(float(np.array(row) @ found.covariance @ np.array(row)))
 
 
 def _pulled(found: Fit, drive: Numbers, dt_ms: float) -> Check:
     """Look for an effect that explains little of the motion, but would make other numbers of the device."""
     worst, sentence = 0.0, ""
+    limits = {name: max(most, FEW * _error(RATIOS[name], found)) for name, most in PULLED.items()}
     for effect in effects(found, drive, dt_ms):
-        for name, most in PULLED.items() if effect.chance < CHANCE else ():
+        for name, most in limits.items() if effect.chance < CHANCE else ():
             change = float(np.array(RATIOS[name]) @ effect.pull[:5])
             if abs(change) / most > worst:
                 worst = abs(change) / most

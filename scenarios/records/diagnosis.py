@@ -33,6 +33,8 @@ MOST_UNEXPLAINED = 0.2
 """Share of unexplained samples from which a record counts as unexplained."""
 Outcome = Literal["no fault", "fault", "unexplained", "refused"]
 """Outcomes of a diagnosis; of several banks the worst counts."""
+MOST_WRONG = 0.1
+"""Share of the second half of the healthy stretch that a bank may call faulty."""
 SHORTEST = 20
 """Samples a verdict must last to be listed by itself."""
 
@@ -58,11 +60,12 @@ class RecordDiagnosis:
     verdicts: dict[str, list[RecordVerdict]] = field(default_factory=dict)
     shares: dict[str, dict[str, float]] = field(default_factory=dict)
     healthy: dict[str, str] = field(default_factory=dict)
+    contradiction: str = ""
 
     @property
     def refusal(self) -> str:
         """Why there is no verdict; empty where there is."""
-        return self.calibration.refusal
+        return self.calibration.refusal or self.contradiction
 
     def faults(self, name: str) -> dict[str, float]:
         """Return the faults that a bank names, each with its share of the record."""
@@ -139,7 +142,26 @@ def diagnose(
         found.verdicts[name] = words
         found.healthy[name] = "" if nominal is None else names[nominal]
         found.shares[name] = _shares(words, record.samples)
+        if wrong := _contradiction(found, name):
+            return RecordDiagnosis(record, calibration, contradiction=wrong)
     return found
+
+
+def _contradiction(found: RecordDiagnosis, name: str) -> str:
+    """Return in words that a bank, which has settled, finds a fault in the stretch that is known to be healthy."""
+    of = found.calibration
+    middle, end = of.first + of.samples // 2, of.first + of.samples
+    wrong: dict[str, int] = {}
+    for one in found.verdicts[name]:
+        if one.verdict not in {UNEXPLAINED, UNSURE, found.healthy[name]}:
+            wrong[one.verdict] = wrong.get(one.verdict, 0) + max(min(one.end, end) - max(one.first, middle), 0)
+    if not found.healthy[name] or sum(wrong.values()) <= MOST_WRONG * (end - middle):
+        return ""
+    word = max(wrong, key=lambda one: wrong[one])
+    return (
+        f"{name} names {word} in the healthy stretch, where there is none: the noise that it assumes does not fit this "
+        "record, or the voltage hardly tells its hypotheses apart"
+    )
 
 
 class _Unexplained:

@@ -28,6 +28,8 @@ STEEP = 4.5
 """Standard errors beyond which a correlation is none of chance."""
 DRIFT = 0.1
 """Largest change of the delay between the halves, in samples."""
+NEGLIGIBLE = 1e-6
+"""Residual over the range of the displacement that is no reason, whatever it looks like."""
 NAMED = 0.3
 """Share of the residual's power that an effect must explain to be named as the reason."""
 
@@ -75,6 +77,11 @@ class Halves:
         """Standard deviation of the rounding, um: no model can do better."""
         return self.quantum / math.sqrt(12.0)
 
+    @property
+    def negligible(self) -> float:
+        """Standard deviation of a residual that is no reason, um."""
+        return NEGLIGIBLE * float(np.nanmax(self.displacement) - np.nanmin(self.displacement))
+
     @cached_property
     def reason(self) -> str:
         """The effect that explains most of a residual that is no noise, in words; empty if it explains little."""
@@ -112,7 +119,7 @@ def _is_resting(halves: Halves) -> bool:
 
 def growth(halves: Halves) -> Check:
     """Compare the residual of the half that was not fitted with the other half."""
-    floor = max(halves.fitted.noise, halves.rounding)
+    floor = max(halves.fitted.noise, halves.rounding, halves.negligible)
     ratio = halves.later.size / floor if floor > 0.0 else math.inf
     ok = ratio <= GROWN
     return Check(
@@ -125,8 +132,8 @@ def whiteness(halves: Halves) -> Check:
     fitted, later = halves.fitted, halves.later_known
     worst = max(_correlation(fitted.residual, fitted.known), _correlation(halves.later.residual, later))
     limit = max(ALIKE, STEEP / math.sqrt(len(halves.later.residual) * later.mean()))  # by how many pairs are known
-    is_rounding = halves.fitted.noise <= 1.1 * halves.rounding
-    ok = worst <= limit or is_rounding
+    is_small = halves.fitted.noise <= max(1.1 * halves.rounding, halves.negligible)
+    ok = worst <= limit or is_small
     return Check("correlation", worst, limit, ok, "" if ok else _because(halves, "its errors follow each other"))
 
 

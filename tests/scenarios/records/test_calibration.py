@@ -14,6 +14,8 @@ from scenarios.records.calibration import calibrate
 from scenarios.records.diagnosis import UNEXPLAINED, diagnose
 from scenarios.records.fit import fit
 from scenarios.records.shelf import RecordFolder
+from scenarios.run import run
+from scenarios.schema import Scenario
 from tests.scenarios.records.foreign import DT, HEALTHY, NAMES, OTHERS, OUTSIDE, Foreign, draw, other_nominal
 from tests.scenarios.records.study import bench_of
 
@@ -120,6 +122,26 @@ def test_a_slow_chirp_whose_first_half_ends_below_the_resonance_is_no_reason_aga
         record = MeasuredRecord(1.0 / nominal.dt, one.drive.copy(), one.displacement.copy())
         found = calibrate(record, bench_of(nominal).spec.nominal, 0, HEALTHY)
         assert not found.refusal, (seed, found.refusal)
+
+
+def test_a_loop_that_feeds_the_noise_back_shows_no_effect(folder: RecordFolder) -> None:
+    bench = get("ch5-closed-loop")
+    result = run(Scenario.load({**bench.document, "events": [], "expect": [], "samples": 8000}))
+    drive, displacement = (np.array(result.signal(name)) for name in ("drive.voltage", "sensor.displacement"))
+    found = diagnose(MeasuredRecord(50.0, drive, displacement), bench, 0, 4000, folder)
+    assert found.outcome == "no fault", found.sentence
+
+
+def test_a_bank_that_finds_a_fault_in_the_healthy_stretch_is_refused(folder: RecordFolder) -> None:
+    """A slow tone hardly tells masses apart; with a process noise that is not there, the least spread wins."""
+    slow = get("ch3-mrac-noise").document
+    result = run(Scenario.load({**slow, "events": [], "expect": [], "duration_ms": 80}))
+    drive, displacement = (np.array(result.signal(name)) for name in ("drive.voltage", "sensor.displacement"))
+    bench = Scenario.load({**get("first-look").document, "device": slow["device"]})
+    found = diagnose(MeasuredRecord(100.0, drive, displacement), bench, 0, 4000, folder)
+    assert not found.calibration.refusal
+    assert found.outcome == "refused" and found.result is None
+    assert "kalman names m+10 in the healthy stretch, where there is none" in found.sentence
 
 
 def test_the_numbers_are_fitted_to_both_halves() -> None:
