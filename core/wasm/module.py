@@ -1,4 +1,4 @@
-"""A module in WebAssembly: kernels that it offers, and the steps that these call by their numbers.
+"""A module in WebAssembly: kernels that it offers, and the steps and segments that these call by their numbers.
 
 A kernel that it offers takes the place of its results first. Of its arguments a number is a double, and an array the
 place of its first element followed by its lengths. Results are doubles too: all whole numbers of a board are exact.
@@ -18,14 +18,15 @@ import llvmlite
 import llvmlite.binding as llvm
 from llvmlite import ir
 
+from core.compile import code, segment
 from core.compile.arrays import ELEMENTS, ArrayView, contiguous
-from core.compile.code import Block, compiler, digest, hash_of, settled
-from core.compile.code import instructions as step_instructions
+from core.compile.code import Block, compiler, digest, settled
 from core.compile.instructions import call
 from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, CompiledNumber
+from core.compile.segment import Segment
 from core.compile.translate import Translation
 from core.errors import InputError
-from core.kernel_cache import get, key, put
+from core.kernel_cache import bytecode, get, key, put
 from core.wasm import target
 
 LENT = {"fmod"}
@@ -55,8 +56,8 @@ class NumberedTranslation(Translation):
         return None
 
 
-def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block]) -> bytes:
-    """Return the module of some kernels and steps; parts of it that are not on the shelf are put there.
+def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segment]) -> bytes:
+    """Return the module of some kernels, steps and segments; parts of it that are not on the shelf are put there.
 
     Raises
     ------
@@ -64,10 +65,12 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block]) -> b
         When a step calls a function that the machine does not have.
     """
     module = target.aimed(_dispatch(len(steps)))
-    for number, block in enumerate(steps):
-        part = _part(f"wasm-{block.__module__}-{digest(hash_of(block), _own())}", partial(_step, block))
+    for number, step in enumerate(steps):
+        piece = segment.piece(step) if isinstance(step, tuple) else code.step(step)
+        part = _part(f"wasm-{piece.name}-{digest(piece.hash(bytecode), _own())}", piece.write)
         if missing := {*target.asked_for(part)} - LENT:
-            raise InputError(f"{block.name} calls {', '.join(sorted(missing))}, which no browser has")
+            name = "a segment" if isinstance(step, tuple) else step.name
+            raise InputError(f"{name} calls {', '.join(sorted(missing))}, which no browser has")
         part.get_function(NAME).name = f"{NAME}_{number}"
         module.link_in(part)
     for name, kernel in kernels.items():
@@ -79,17 +82,13 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block]) -> b
 
 def _part(name: str, write: Callable[[], str], function: str = NAME) -> Any:
     """Return a module with one function, from the shelf if the shelf has it."""
-    code = get(name)
-    if code is None:
+    kept = get(name)
+    if kept is None:
         part = target.aimed(write())
         target.improve(part, {function})
         put(name, part.as_bitcode())
         return part
-    return llvm.parse_bitcode(code)
-
-
-def _step(block: Block) -> str:
-    return step_instructions(block, 1, lanes=False)
+    return llvm.parse_bitcode(kept)
 
 
 @cache

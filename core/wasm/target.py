@@ -8,7 +8,7 @@ from typing import Any
 import llvmlite.binding as llvm
 
 TARGET = "wasm32-unknown-unknown"
-FEATURES = "+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals"
+FEATURES = "+bulk-memory,+nontrapping-fptoint,+sign-ext,+mutable-globals,+simd128"
 ALIGNMENT = 64
 ROOM = """
 define i32 @room() "wasm-export-name"="room" {{
@@ -29,8 +29,8 @@ def improve(module: Any, kept: set[str]) -> None:
     for one in (*module.global_variables, *module.functions):
         if not one.is_declaration and one.name not in kept:
             one.linkage = "internal"
-    tuning = llvm.create_pipeline_tuning_options(speed_level=2)
-    tuning.loop_vectorization = tuning.slp_vectorization = False
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.loop_vectorization = tuning.slp_vectorization = True
     passes = llvm.create_pass_builder(machine(), tuning)
     passes.getModulePassManager().run(module, passes)
 

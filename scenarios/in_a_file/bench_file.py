@@ -16,6 +16,7 @@ from core.device.catalogue import device
 from core.errors import InputError
 from core.wasm.module import module_of
 from scenarios.in_a_file.board_file import board_document
+from scenarios.in_a_file.board_steps import steps_of
 from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.kernels import KERNELS
 from scenarios.in_a_file.supervisor_table import refused_supervisor
@@ -64,9 +65,9 @@ def bench_file(scenario: Scenario) -> BenchFile:
         raise InputError(f"{scenario.id} cannot be a bench in a file: {reason}", "scenario")
     board = build(scenario, compiled=False)
     boards = {MAIN: board, **(board.twins if isinstance(board, Ensemble) else {})}
-    blocks = [*dict.fromkeys(one.block for each in boards.values() for one in each.wiring.instances)]
+    steps = steps_of(boards.values())
     try:
-        code = module_of(KERNELS, blocks)
+        code = module_of(KERNELS, steps)
     except Unsupported as error:
         raise InputError(f"{scenario.id} cannot be a bench in a file: {error}", "scenario") from None
     writes = Writes(board, scenario)
@@ -76,7 +77,7 @@ def bench_file(scenario: Scenario) -> BenchFile:
     found = {
         name: board_document(
             each,
-            blocks,
+            steps,
             {
                 "faults": faults[name],
                 "present": present[name],

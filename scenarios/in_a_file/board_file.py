@@ -20,20 +20,21 @@ from core.diagnose.hypothesis import names_of
 from core.diagnose.regions import REGIONS
 from core.loop.guard import REASONS
 from core.ports import RESERVED
+from scenarios.in_a_file.board_steps import Step, segments_of
 
 BEFORE_THE_START = ("scheduled", "warning")
 """Entries of the log about waiting commands, and warnings of the scenario itself."""
 
 
-def board_document(board: Board, blocks: list[Any], writes: dict[str, Any], ticks: int) -> dict[str, Any]:
+def board_document(board: Board, steps: list[Step], writes: dict[str, Any], ticks: int) -> dict[str, Any]:
     """Return the document of a board.
 
     Parameters
     ----------
     board : Board
         At its first tick.
-    blocks : list of type
-        All blocks of the bench; the number of a step is its place.
+    steps : list
+        All blocks and segments of the bench; the number of a step is its place.
     writes : dict
         Faults, wirings and values.
     ticks : int
@@ -41,7 +42,7 @@ def board_document(board: Board, blocks: list[Any], writes: dict[str, Any], tick
     """
     return {
         "dt_ms": board.dt_ms,
-        **_arrays(board, blocks, ticks),
+        **_arrays(board, steps, ticks),
         **_signals(board),
         **_trips(board),
         "followed": _followed(board),
@@ -54,11 +55,11 @@ def board_document(board: Board, blocks: list[Any], writes: dict[str, Any], tick
     }
 
 
-def _arrays(board: Board, blocks: list[Any], ticks: int) -> dict[str, Any]:
+def _arrays(board: Board, steps: list[Step], ticks: int) -> dict[str, Any]:
     """Return the arrays of a board; the address of a step is its number."""
     wiring = board.wiring
     table = wiring.table.copy()
-    table[:, ADDRESS] = [blocks.index(one.block) for one in wiring.instances]
+    table[:, ADDRESS] = [steps.index(one.block) for one in wiring.instances]
     outputs, taps = wiring.signals.outputs, len(wiring.signals.taps)
     history = History(outputs, taps, ticks)
     groups, lanes = history.places(np.arange(outputs + taps))
@@ -66,6 +67,7 @@ def _arrays(board: Board, blocks: list[Any], ticks: int) -> dict[str, Any]:
     return {
         "arrays": {"table": table, "p": wiring.p, "s": wiring.s, "w": wiring.w, "io": wiring.io},
         "running": board.walk.running,
+        "segments": segments_of(board, steps),
         "rows": [_row(board, row, one) for row, one in enumerate(wiring.instances)],
         "endless": np.flatnonzero(wiring.endless),
         "folds": fold.begin(outputs),

@@ -23,6 +23,7 @@ from scenarios.benchmark.seeds import seed_list
 from scenarios.benchmark.track import BenchmarkTrack, Case, tracks
 from scenarios.in_a_file.bench_file import BenchFile
 from scenarios.in_a_file.board_file import board_document
+from scenarios.in_a_file.board_steps import Step, steps_of
 from scenarios.in_a_file.board_writes import BoardWrites
 from scenarios.in_a_file.kernels import KERNELS
 from scenarios.run import build
@@ -57,7 +58,7 @@ def track_file(name: str) -> BenchFile:
         numbers = _numbers(case, board)
         cases.append(numbers)
         firsts.setdefault(numbers.kind, board)
-    steps = [*dict.fromkeys(one.block for board in firsts.values() for one in board.wiring.instances)]
+    steps = steps_of(firsts.values())
     document = {
         "title": f"{track.title}: {len(cases)} cases of mems-diag-1",
         "summary": track.question,
@@ -105,7 +106,7 @@ def _numbers(case: Case, board: Board) -> CaseNumbers:
     return CaseNumbers(kind, {name: getattr(wiring, name).copy() for name in NUMBERS}, document)
 
 
-def _board(board: Board, steps: list[Any]) -> dict[str, Any]:
+def _board(board: Board, steps: list[Step]) -> dict[str, Any]:
     """Return the document of a board without commands."""
     writes = {
         "faults": {},

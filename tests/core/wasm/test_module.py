@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from core.board import fold
+from core.compile import code
 from core.compile.instructions import address_of, call
+from core.compile.segment import SegmentStep
 from core.errors import InputError
 from core.kernel import kernel
 from core.wall.host import machine
@@ -98,6 +100,16 @@ def test_a_step_is_called_by_its_number(step_of: Callable[[float], Any]):
     assert set(module.asked) <= {"__linear_memory", "__stack_pointer"}
 
 
+def test_a_segment_is_called_by_its_number_and_runs_its_steps_in_their_order(step_of: Callable[[float], Any]):
+    double, triple = step_of(2.0), step_of(3.0)
+    segment = (SegmentStep(double, 1, 0, 0, 0, ()), SegmentStep(triple, 1, 0, 0, 2, ((0, 3),)))
+    kinds = (("float64", 1), ("float64", 1), ("float64", 1), ("int64", 1), "int64")
+    module = RunModule(module_of({"called": OfferedKernel(_called.py_func, kinds)}, [double, triple, segment]))
+    signals = np.array([0.0, 0.0, 1.25, 0.0, 0.0])
+    module.call("called", np.zeros(1), np.zeros(1), signals, np.array([2, 3, 0, 4]), 2)
+    assert signals.tolist() == [0.0, 0.0, 1.25, 2.5, 7.5]  # the place of port 0 is known, so it is not read
+
+
 @pytest.fixture
 def step_of() -> Callable[[float], Any]:
     """Return a maker of blocks that multiply a signal by a factor."""
@@ -122,8 +134,7 @@ def step_of() -> Callable[[float], Any]:
 def test_a_step_that_needs_a_function_of_the_system_is_refused_by_name(monkeypatch: pytest.MonkeyPatch):
     from core.wasm import module
 
-    def away(_: Any) -> str:
-        return """
+    away = """
 declare double @tgamma(double)
 define void @"step"(ptr %p, ptr %s, ptr %w, ptr %io) {
   %x = load double, ptr %p
@@ -134,7 +145,7 @@ define void @"step"(ptr %p, ptr %s, ptr %w, ptr %io) {
 
     monkeypatch.setattr(module, "get", lambda _: None)
     monkeypatch.setattr(module, "put", lambda *_: None)
-    monkeypatch.setattr(module, "_step", away)
+    monkeypatch.setattr(code, "translated", lambda *_: (away, True))
     from core.loop.guard import Guard
 
     with pytest.raises(InputError, match=r"guard calls tgamma, which no browser has"):

@@ -112,13 +112,18 @@ export class BenchArrays {
 
   /** Run these rows from now on, in their order. */
   link(running: ReadonlySet<number>): void {
-    const { table } = this.document.arrays;
-    const columns = table.length / this.document.rows.length;
+    const { arrays, segments, rows: all } = this.document;
+    const columns = arrays.table.length / all.length;
     const rows = [...running].sort((a, b) => a - b);
-    for (const [i, row] of rows.entries())
-      this.table.view.set(table.subarray(columns * row, columns * (row + 1)), columns * i);
-    this.rows = rows.length;
-    this.table.lengths = [rows.length, columns];
+    this.rows = 0;
+    for (let i = 0; i < rows.length; this.rows += 1) {
+      const segment = segments.find((one) => one.rows.every((row, k) => row === rows[i + k]));
+      const own = arrays.table.slice(columns * rows[i], columns * (rows[i] + 1));
+      if (segment) own.set([BigInt(segment.step), 0n, 0n, 0n, 1n]); // all of the board, at each tick
+      this.table.view.set(own, columns * this.rows);
+      i += segment?.rows.length ?? 1;
+    }
+    this.table.lengths = [this.rows, columns];
   }
 
   /** Run up to `n` ticks; how many were run, and why the loop returned. */

@@ -22,3 +22,17 @@ it("goes back to a checkpoint with the values, faults and bits that it had there
   expect([bench.tick, bench.values[path], [...bench.faults.keys()]]).toEqual([50, value, []]);
   expect(await change()).toBe(digest);
 });
+
+it("has the bits of its rows, one by one, where they run as segments", async () => {
+  const run = async (segments: typeof document.segments) => {
+    const bench = await FileBench.load(code, { ...document, segments });
+    bench.advance(300);
+    bench.apply({ fault: "added_mass", severity: document.faults.added_mass.suggested });
+    bench.advance(300);
+    bench.apply({ switch: "mrac" });
+    bench.advance(300);
+    return bench.digest();
+  };
+  expect(document.segments.length).toBeGreaterThan(0);
+  expect(await run(document.segments)).toBe(await run([]));
+});

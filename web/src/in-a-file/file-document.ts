@@ -123,6 +123,8 @@ export interface BoardDocument {
   dt_ms: number;
   arrays: { table: BigInt64Array; p: Float64Array; s: Float64Array; w: Float64Array; io: BigInt64Array };
   running: number[];
+  /** Rows that run as one function where they run one after another, and its number. */
+  segments: { rows: number[]; step: number }[];
   rows: FileRow[];
   endless: BigInt64Array;
   folds: BigUint64Array;
