@@ -11,6 +11,8 @@ from core.measured_record import UNLABELLED, PlayedRecord
 from core.ports import BlockPorts, output
 from core.record import Record, Vector, vector
 
+TAPS = 4
+"""Samples from which a voltage between samples is worked out."""
 WINDOW = 512
 """Samples of the record that the state holds: the ticks that a board runs at a stretch."""
 
@@ -85,7 +87,7 @@ def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: i
     s: Any = RecordPlant.State(state)
     end = min(tick + n, record.samples)
     count, s.first = end - tick, tick
-    start = max(tick - int(params.delay_samples) - 1, 0)
+    start = max(tick - int(params.delay_samples) - TAPS, 0)
     drive, displacement, label = record.stretch(start, end)
     s.drive[:count] = delayed(drive, params.delay_samples, tick - start, end - start)
     found = displacement[tick - start :]
@@ -98,8 +100,21 @@ def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: i
 
 
 def delayed(drive: FloatArray, delay: float, first: int, end: int) -> FloatArray:
-    """Return samples of a voltage that comes later; within a sample its mean, before the record its first value."""
-    whole = int(delay)
-    rest, places = delay - whole, np.arange(first - whole, end - whole)
-    found = drive[np.maximum(places, 0)]
-    return found if rest == 0.0 else (1.0 - rest) * found + rest * drive[np.maximum(places - 1, 0)]
+    r"""Return samples of a voltage that comes later by a number of samples that need not be whole.
+
+    The voltage is held between samples, and what a linear device does under it is what it does under
+
+    .. math:: \sum_i c_i u_{k-i},\qquad c_i=\prod_{j\ne i}\frac{\tau-j}{i-j},
+
+    up to the fourth power of its frequency over the rate of samples (Laakso et al. 1996): the delays of both have the
+    same moments. Before the record the voltage has its first value.
+    """
+    if delay == int(delay):
+        return drive[np.maximum(np.arange(first, end) - int(delay), 0)]
+    taps = np.arange(TAPS) + max(int(delay) - (TAPS // 2 - 1), 0)
+    found = np.zeros(end - first)
+    for tap in taps:
+        others = taps[taps != tap]
+        weight = float(np.prod((delay - others) / (tap - others)))
+        found += weight * drive[np.maximum(np.arange(first, end) - tap, 0)]
+    return found

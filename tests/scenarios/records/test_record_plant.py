@@ -102,7 +102,8 @@ def test_offset_and_delay_of_a_calibration_are_taken_out(own: MeasuredRecord, fo
     found = run(Scenario.load(document))
     drive = own.drive
     assert found.signal("sensor.displacement")[20] == own.displacement[20] - 0.25
-    assert found.signal("drive.voltage")[20] == 0.5 * drive[18] + 0.5 * drive[17]
+    expected = (9.0 * (drive[18] + drive[17]) - drive[19] - drive[16]) / 16.0
+    assert found.signal("drive.voltage")[20] == pytest.approx(expected, abs=1e-12)
 
 
 def test_the_board_trips_at_the_end_of_the_record(own: MeasuredRecord, folder: RecordFolder) -> None:
