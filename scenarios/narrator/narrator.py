@@ -68,7 +68,9 @@ class Narrator:
         self._samples = NarratorSignals(
             column, [name for name in (MODEL, MEASURED, *SCALES.values()) if name in column]
         )
-        self._followed = [f"{name}.{port}" for name in chosen for port in PORTS if f"{name}.{port}" in column]
+        is_known = spec.record is None or spec.record.has_labels  # the truth
+        ports = PORTS if is_known else PORTS[:1]
+        self._followed = [f"{name}.{port}" for name in chosen for port in ports if f"{name}.{port}" in column]
         self._columns = np.array([column[name] for name in self._followed], dtype=np.int64)
         self._last = np.full(len(self._followed), np.nan, np.float32)
         self._signals = [

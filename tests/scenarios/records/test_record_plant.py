@@ -42,6 +42,16 @@ def test_a_trace_of_the_bench_gives_the_bits_of_its_own_bank(
     assert not any(name.startswith("control.") for name in again.metrics)
 
 
+def test_the_narrator_judges_a_verdict_only_where_labels_tell_the_truth(
+    own: MeasuredRecord, folder: RecordFolder
+) -> None:
+    bare = MeasuredRecord(own.rate_khz, own.drive, own.displacement)
+    labelled, unlabelled = (run(Scenario.load(bench(one, folder)), narrate=True).narration for one in (own, bare))
+    assert len(labelled) == len(unlabelled) > 3
+    assert all("Correct" in said.text or "Wrong" in said.text for said in labelled)
+    assert not any("Correct" in said.text or "Wrong" in said.text for said in unlabelled)
+
+
 @pytest.mark.parametrize("slices", [(1,), (7, 64), (512,)])
 def test_slices_plain_steps_and_copies_have_one_digest(
     slices: tuple[int, ...], own: MeasuredRecord, folder: RecordFolder

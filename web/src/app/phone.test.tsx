@@ -46,6 +46,12 @@ it("has the scope above the lanes, and a bar for the thumb", () => {
   expect(screen.queryByRole("combobox", { name: /panel/i })).not.toBeInTheDocument();
 });
 
+it("draws no model beside a record, which followed none", () => {
+  connect({ ...bench, record: { key: "a".repeat(64), samples: 100, labels: [] } });
+  mount(<Phone />);
+  expect(scope()).toHaveAccessibleName(/plant\.displacement, sensor\.displacement$/);
+});
+
 it("stops the bench and runs it", async () => {
   const board = connect({ ...bench, state: "running" });
   const { user } = mount(<Phone />);

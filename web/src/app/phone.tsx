@@ -25,12 +25,14 @@ import { PhoneMore } from "./phone-more";
 import { Split } from "./split";
 
 const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.displacement"]);
+const RECORDED = scopeConfig(["plant.displacement", "sensor.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: one scope, one view below it, and a bar that the thumb reaches. */
 export function Phone() {
   const title = useBench((s) => s.bench?.title);
   const isFlat = useBench((s) => !hasAxes(s.bench));
+  const usual = useBench((s) => (hasAxes(s.bench) ? RATE : s.bench?.record ? RECORDED : MOTION));
   const [chosen, setScope] = useState<ScopeConfig | undefined>(undefined);
   const [more, setMore] = useState(false);
   const page = usePageVisible();
@@ -51,7 +53,7 @@ export function Phone() {
         <Split
           upper={
             <ErrorFence name="Scope">
-              <ScopePanel config={chosen ?? (isFlat ? MOTION : RATE)} onChange={setScope} />
+              <ScopePanel config={chosen ?? usual} onChange={setScope} />
             </ErrorFence>
           }
           lower={<Lower usual={isFlat ? "lanes" : "locus"} />}
