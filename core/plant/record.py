@@ -102,7 +102,7 @@ def supply(state: FloatArray, params: Any, record: PlayedRecord, tick: int, n: i
 def delayed(drive: FloatArray, delay: float, first: int, end: int) -> FloatArray:
     r"""Return samples of a voltage that comes later by a number of samples that need not be whole.
 
-    The voltage is held between samples, and what a linear device does under it is what it does under
+    The voltage is held between samples. A linear device moves under the late voltage as it moves under
 
     .. math:: \sum_i c_i u_{k-i},\qquad c_i=\prod_{j\ne i}\frac{\tau-j}{i-j},
 

@@ -76,8 +76,8 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segm
     for name, kernel in kernels.items():
         content = digest(key(kernel.function), name, kernel.kinds, compiler(), _own())
         module.link_in(_part(f"wasm-{name}-{content}", partial(instructions, name, kernel), name))
-    target.improve(module, {*kernels})
-    return target.emitted(module)
+    target.improve(module, {*kernels}, vectors=True)
+    return target.emitted(module, vectors=True)
 
 
 def _part(name: str, write: Callable[[], str], function: str = NAME) -> Any:
@@ -85,10 +85,10 @@ def _part(name: str, write: Callable[[], str], function: str = NAME) -> Any:
     kept = get(name)
     if kept is None:
         part = target.aimed(write())
-        target.improve(part, {function})
-        put(name, part.as_bitcode())
-        return part
-    return llvm.parse_bitcode(kept)
+        target.improve(part, {function}, vectors=True)
+        kept = part.as_bitcode()
+        put(name, kept)
+    return llvm.parse_bitcode(kept)  # a new part too: its order in memory differs, and so might the code of the module
 
 
 @cache
