@@ -19,6 +19,8 @@ PARTS = 20
 
 ALLOWED: dict[str, str] = {
     "tests/repo/test_codegen.py::test_recorded_answers_are_current": "It records all answers that views are tested on.",
+    "tests/scenarios/in_a_file/test_same_bits.py::test_slow_blocks": "It compiles a bench of its own to WebAssembly.",
+    "tests/server/test_folder.py::test_rest_and_command_line_give_one_file": "It compiles two benches to WebAssembly.",
     "tests/server/test_fuzz.py::test_no_request_brings_a_failure": "It asks at every door of the OpenAPI document.",
 }
 """Tests of the short suite that may take longer, by the beginning of their names, and the reason."""
