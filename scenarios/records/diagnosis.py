@@ -69,8 +69,7 @@ class RecordDiagnosis:
 
     def faults(self, name: str) -> dict[str, float]:
         """Return the faults that a bank names, each with its share of the record."""
-        none = {UNEXPLAINED, UNSURE, self.healthy[name]}
-        return {word: share for word, share in self.shares[name].items() if word not in none}
+        return _faults(self.shares[name], self.healthy[name])
 
     @property
     def outcome(self) -> Outcome:
@@ -141,7 +140,7 @@ def diagnose(
         words = _words(result, name, names, unexplained[f"{name}.unexplained"])
         found.verdicts[name] = words
         found.healthy[name] = "" if nominal is None else names[nominal]
-        found.shares[name] = _shares(words, record.samples)
+        found.shares[name] = _shares(words, 0, record.samples)
         if wrong := _contradiction(found, name):
             return RecordDiagnosis(record, calibration, contradiction=wrong)
     return found
@@ -151,13 +150,10 @@ def _contradiction(found: RecordDiagnosis, name: str) -> str:
     """Return in words that a bank, which has settled, finds a fault in the stretch that is known to be healthy."""
     of = found.calibration
     middle, end = of.first + of.samples // 2, of.first + of.samples
-    wrong: dict[str, int] = {}
-    for one in found.verdicts[name]:
-        if one.verdict not in {UNEXPLAINED, UNSURE, found.healthy[name]}:
-            wrong[one.verdict] = wrong.get(one.verdict, 0) + max(min(one.end, end) - max(one.first, middle), 0)
-    if not found.healthy[name] or sum(wrong.values()) <= MOST_WRONG * (end - middle):
+    wrong = _faults(_shares(found.verdicts[name], middle, end), found.healthy[name])
+    if not found.healthy[name] or sum(wrong.values()) <= MOST_WRONG:
         return ""
-    word = max(wrong, key=lambda one: wrong[one])
+    word = next(iter(wrong))
     return (
         f"{name} names {word} in the healthy stretch, where there is none: the noise that it assumes does not fit this "
         "record, or the voltage hardly tells its hypotheses apart"
@@ -206,12 +202,18 @@ def _words(result: RunResult, name: str, hypotheses: list[str], unexplained: Boo
     return found
 
 
-def _shares(verdicts: list[RecordVerdict], samples: int) -> dict[str, float]:
-    """Return the share of samples of each verdict, the largest first."""
+def _shares(verdicts: list[RecordVerdict], first: int, end: int) -> dict[str, float]:
+    """Return the share of the samples of a stretch that each verdict has, the largest first."""
     counted: dict[str, float] = {}
     for one in verdicts:
-        counted[one.verdict] = counted.get(one.verdict, 0.0) + (one.end - one.first) / samples
+        if (count := min(one.end, end) - max(one.first, first)) > 0:
+            counted[one.verdict] = counted.get(one.verdict, 0.0) + count / (end - first)
     return dict(sorted(counted.items(), key=lambda entry: -entry[1]))
+
+
+def _faults(shares: dict[str, float], healthy: str) -> dict[str, float]:
+    """Return the shares of the verdicts that are faults."""
+    return {word: share for word, share in shares.items() if word not in {UNEXPLAINED, UNSURE, healthy}}
 
 
 def as_document(found: RecordDiagnosis) -> dict[str, Any]:

@@ -59,11 +59,6 @@ class Fit:
         Of the voltage on the acceleration, um/(ms^2 V).
     offset : float
         um.
-    variance : float
-        Of the noise, um^2.
-    spread : array, shape (5, 5)
-        Covariance over ``variance`` of the logarithms of stiffness and damping, the delay, the logarithm of the gain,
-        and the offset.
     known : array of bool, shape (samples,)
         Which samples were measured.
     residual : array, shape (known samples,)
@@ -71,7 +66,7 @@ class Fit:
     motion : array, shape (samples,)
         The fitted displacement without offset, at lost samples too, um.
     jacobian : array, shape (known samples, 7)
-        Change of the output with each number: as ``spread`` has them, then first displacement and velocity.
+        Change of the output with each number: the numbers of ``spread``, then first displacement and velocity.
     """
 
     stiffness: float
@@ -79,16 +74,28 @@ class Fit:
     delay: float
     gain: float
     offset: float
-    variance: float
-    spread: Numbers = field(repr=False)
     known: NDArray[np.bool_] = field(repr=False)
     residual: Numbers = field(repr=False)
     motion: Numbers = field(repr=False)
     jacobian: Numbers = field(repr=False)
 
     @property
+    def variance(self) -> float:
+        """Variance of the noise, um^2."""
+        return float(self.residual @ self.residual) / max(len(self.residual) - 7, 1) + NO_ZERO
+
+    @cached_property
+    def spread(self) -> Numbers:
+        """Covariance over ``variance``: logarithms of stiffness and damping, delay, logarithm of the gain, offset."""
+        scale = self._scaled[0]
+        sizes, directions = np.linalg.eigh((self.jacobian / scale).T @ (self.jacobian / scale))
+        # a direction that the record does not tell has a large variance, and not none
+        inverse = directions / np.maximum(sizes, 1e-14) @ directions.T / np.outer(scale, scale)
+        return np.asarray(inverse[:5, :5])
+
+    @property
     def covariance(self) -> Numbers:
-        """Covariance of the numbers, as ``spread`` has them."""
+        """Covariance of the numbers of ``spread``."""
         return self.variance * self.spread
 
     @property
@@ -230,19 +237,12 @@ def fit(
     jacobian = np.empty((len(y), 7))
     jacobian[:, :3] = slopes(numbers, weights, drive, dt_ms)[known]
     jacobian[:, 3], jacobian[:, 4:] = gain * basis[:, 0], basis[:, [3, 1, 2]]
-    scale = np.sqrt(np.sum(jacobian**2, axis=0)) + NO_ZERO
-    sizes, directions = np.linalg.eigh((jacobian / scale).T @ (jacobian / scale))
-    # so has a direction that the record does not tell
-    inverse = directions / np.maximum(sizes, 1e-14) @ directions.T / np.outer(scale, scale)
-    variance = float(left @ left) / max(len(y) - 7, 1) + NO_ZERO
     return Fit(
         stiffness=math.exp(numbers[0]),
         damping=math.exp(numbers[1]),
         delay=float(numbers[2]),
         gain=gain,
         offset=float(weights[3]),
-        variance=variance,
-        spread=inverse[:5, :5],
         known=known,
         residual=left,
         motion=whole[:, :3] @ weights[:3],

@@ -85,7 +85,8 @@ class Halves:
     @cached_property
     def reason(self) -> str:
         """The effect that explains most of a residual that is no noise, in words; empty if it explains little."""
-        share, name = max((one.share, one.name) for one in effects(self.fitted, self.drive, self.dt_ms))
+        found = ((one.share, one.name) for one in effects(self.fitted, self.drive, self.dt_ms))
+        share, name = max(found, default=(0.0, ""))
         if share < NAMED:
             return ""
         return f"{name} explains {100.0 * share:.0f} % of the motion that mass, damper and spring leave unexplained"

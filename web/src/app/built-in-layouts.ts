@@ -25,6 +25,9 @@ const RECORDED = [
   scope("voltage", "Voltage", ["drive.voltage"]),
 ];
 
+/** The scope of the motion, also where there is no room for more. */
+export const motionOf = (ofRecord: boolean): ScopeConfig => (ofRecord ? RECORDED : SIMULATED)[0].scope;
+
 /** The smallest size of the loop; the panels below it are as wide. */
 export const LOOP_PX = { width: 326, height: 312 };
 

@@ -12,6 +12,7 @@ import { useBench } from "../stream/bench-store";
 import { type ScopeConfig, scopeConfig } from "../stream/scope-config";
 import { ErrorFence } from "../ui/error-fence";
 import { usePageVisible } from "../ui/on-screen";
+import { motionOf } from "./built-in-layouts";
 import { Caption } from "./caption";
 import { CompanyMenu } from "./header/company";
 import { DeviceClock } from "./header/device-clock";
@@ -24,15 +25,13 @@ import { PhoneBar } from "./phone-bar";
 import { PhoneMore } from "./phone-more";
 import { Split } from "./split";
 
-const MOTION = scopeConfig(["plant.displacement", "sensor.displacement", "model.displacement"]);
-const RECORDED = scopeConfig(["plant.displacement", "sensor.displacement"]);
 const RATE = scopeConfig(["rate.rate", "@active.rate"], { windowMs: 200 });
 
 /** A bench in the hand: one scope, one view below it, and a bar that the thumb reaches. */
 export function Phone() {
   const title = useBench((s) => s.bench?.title);
   const isFlat = useBench((s) => !hasAxes(s.bench));
-  const usual = useBench((s) => (hasAxes(s.bench) ? RATE : s.bench?.record ? RECORDED : MOTION));
+  const usual = useBench((s) => (hasAxes(s.bench) ? RATE : motionOf(Boolean(s.bench?.record))));
   const [chosen, setScope] = useState<ScopeConfig | undefined>(undefined);
   const [more, setMore] = useState(false);
   const page = usePageVisible();
