@@ -23,6 +23,7 @@ from scenarios.campaign.progress import Signs, receive, watched
 LOST: tuple[type[BaseException], ...] = (BrokenProcessPool, CancelledError, OSError)
 """Errors of a future or a connection after a worker, the scheduler or the line to it is lost."""
 LOADED = "scenarios.campaign.loaded"
+_preloaded = [LOADED]
 T = TypeVar("T")
 
 
@@ -115,11 +116,17 @@ def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> Process
     told = niceness, signs, wall.is_demanded()
     if sys.platform != "linux":
         return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), prepare, told)
-    forkserver.set_forkserver_preload([LOADED])
+    forkserver.set_forkserver_preload(_preloaded)
     starter = threading.Thread(target=_load, args=(niceness,))
     starter.start()
     starter.join()
     return ProcessPoolExecutor(workers, multiprocessing.get_context("forkserver"), prepare, told)
+
+
+def preload(module: str) -> None:
+    """Let processes be forked from one that has loaded this module too; processes that run already are as they are."""
+    if module not in _preloaded:
+        _preloaded.insert(0, module)  # the common data come last, and freeze all loaded objects
 
 
 def _load(niceness: int) -> None:

@@ -14,7 +14,7 @@ from weakref import WeakValueDictionary
 
 from core.errors import InputError
 from core.own.admission import terms
-from scenarios.campaign.executor import Processes
+from scenarios.campaign.executor import Processes, preload
 from server.computing.asker import asker
 from server.computing.limits import MOST_BYTES, EndedWork, within
 from server.errors import ApiError
@@ -35,6 +35,7 @@ BUDGET_S, EARNED = 10.0, 0.25
 MOST_SPENT_S = 1.0
 """Processor time of a bench that counts: a kernel that is compiled meanwhile is not the student's to pay."""
 
+LOADED = "server.computing.loaded"
 T = TypeVar("T")
 
 
@@ -48,6 +49,7 @@ class Computing:
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
+        preload(LOADED)
         self._free = deque(Processes(1, NICE) for _ in range(WORKERS))
         self._all = [*self._free]
         self._room = asyncio.Semaphore(WORKERS)
@@ -146,6 +148,5 @@ async def _start(worker: Processes) -> None:
 
 
 def load() -> None:
-    """Load the code of all computations, in the process that computes."""
-    for name in ("bench_files", "devices", "diagnosers", "experiments", "records", "scenarios", "theory", "units"):
-        import_module(f"server.api.{name}")
+    """Load the code of all computations, in the process that computes, where it is not there from the beginning."""
+    import_module(LOADED)

@@ -54,6 +54,14 @@ async def startup(self, sockets):
 serve.Server.startup = startup
 serve.serve(Settings(port=0, data=Path(sys.argv[1]), figures=False, run_workers=0))
 """
+FORKED = """
+import asyncio
+from server.clock import ManualClock
+from server.computing.computing import Computing
+computing = Computing(ManualClock())
+print(asyncio.run(computing.call(eval, "'server.api.experiments' in __import__('sys').modules")))
+computing.close()
+"""
 SERVICE = ["asyncio", "fastapi", "multiprocessing", "sqlalchemy", "starlette", "uvicorn"]
 
 
@@ -90,3 +98,9 @@ def test_a_started_server_has_no_distribution_of_what_is_not_configured(tmp_path
     assert {"fastapi", "sqlalchemy", "uvicorn"} <= there and not there & OPTIONAL.keys()
     assert not [name for name in modules if name.startswith("server.classroom.lti")]
     assert "scenarios.campaign.cluster" not in modules
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process loads the code itself")
+def test_a_process_that_computes_for_requests_is_forked_with_its_code() -> None:
+    done = subprocess.run([sys.executable, "-c", FORKED], capture_output=True, text=True, check=True)
+    assert done.stdout == "True\n"

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-from jsonschema import Draft202012Validator
+from jsonschema_rs import Draft202012Validator
 
 from scenarios.json_schema.documents import json_schema
 from tests.server.conftest import serving

@@ -12,6 +12,8 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from server.computing.computing import Computing
+from server.errors import ApiError
 from tests.server.conftest import TOKEN, Live, Stream
 
 T = TypeVar("T")
@@ -40,6 +42,15 @@ class Somebody:
 
     def stream(self, bench: str = "") -> AbstractContextManager[Stream]:
         return self.live.stream(bench or self.bench, additional_headers=self.headers)
+
+
+def compute_nothing(patch: pytest.MonkeyPatch) -> None:
+    """Refuse all that is computed for requests, in tests of the right to ask alone."""
+
+    async def refuse(*_arguments: Any, **_named: Any) -> Any:
+        raise ApiError(503, "unavailable", "nothing is computed here")
+
+    patch.setattr(Computing, "call", refuse)
 
 
 def the_teacher(live: Live, bench: str = "") -> Somebody:

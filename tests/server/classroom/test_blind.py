@@ -14,7 +14,16 @@ from server.api.view3d import SUBPROTOCOL as SCENE
 from server.classroom.access import DOORS, OPEN_WHILE_BLIND, SOCKET, Need
 from server.classroom.hiding import STOPPED
 from server.stream.hub import CLOSE_TURNED
-from tests.server.classroom.group import Somebody, advance, closed_with, join, open_class, the_teacher, watcher
+from tests.server.classroom.group import (
+    Somebody,
+    advance,
+    closed_with,
+    compute_nothing,
+    join,
+    open_class,
+    the_teacher,
+    watcher,
+)
 from tests.server.classroom.test_blind_doors import ENDING
 from tests.server.classroom.test_doors import code_of
 from tests.server.conftest import Live
@@ -216,7 +225,10 @@ ROLES = ("teacher", "student", "watcher")
 
 
 @pytest.mark.parametrize("role", ROLES)
-def test_every_door_by_role_while_blind(live: Live, group: dict[str, Any], role: str) -> None:
+def test_every_door_by_role_while_blind(
+    live: Live, group: dict[str, Any], role: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compute_nothing(monkeypatch)
     ada = join(live, group, "Ada")
     hide(live, group, ada)
     guest = watcher(live, ada.bench)

@@ -17,7 +17,15 @@ from server.bench.commands import RUN_KINDS
 from server.classroom.access import DOORS, SOCKET, TESTING_DOORS, Need, need_of
 from server.settings import Settings
 from server.stream.wire import SUBPROTOCOL
-from tests.server.classroom.group import Somebody, join, on_loop, open_class, the_teacher, watcher
+from tests.server.classroom.group import (
+    Somebody,
+    compute_nothing,
+    join,
+    on_loop,
+    open_class,
+    the_teacher,
+    watcher,
+)
 
 ROLES = ("teacher", "student", "other student", "borrower", "onlooker", "watcher", "other watcher", "stranger")
 ALLOWED = {
@@ -85,7 +93,8 @@ def test_a_door_that_is_not_in_the_table_is_the_teachers() -> None:
 
 
 @pytest.mark.parametrize("role", ROLES)
-def test_every_door_by_role(live: Any, people: dict[str, Somebody], role: str) -> None:
+def test_every_door_by_role(live: Any, people: dict[str, Somebody], role: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    compute_nothing(monkeypatch)
     somebody, bench = people[role], people["student"].bench
     for (method, path), need in {**DOORS, **TESTING_DOORS}.items():
         if method == SOCKET or (method, path) == ("DELETE", "/api/v1/benches/{bench_id}"):

@@ -41,7 +41,7 @@ def read(path: Path, kind: str) -> dict[str, Any]:
 
 def of_mcap(path: Path) -> dict[str, Any]:
     """Return the signals of an MCAP file, each message checked against its schema, which is checked too."""
-    import jsonschema
+    import jsonschema_rs
     from mcap.reader import make_reader
 
     found: dict[str, Any] = {}
@@ -49,8 +49,8 @@ def of_mcap(path: Path) -> dict[str, Any]:
         for schema, channel, message in make_reader(file).iter_messages():
             assert schema is not None and (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
             said, rule = json.loads(message.data), json.loads(schema.data)
-            jsonschema.Draft202012Validator.check_schema(rule)
-            jsonschema.Draft202012Validator(rule).validate(said)
+            jsonschema_rs.meta.validate(rule)
+            jsonschema_rs.Draft202012Validator(rule).validate(said)
             assert message.log_time == round(said["time_ms"] * 1e6)
             for name, value in said.items():
                 if name in ("tick", "time_ms") and channel.topic != "/plant":
