@@ -7,12 +7,12 @@ const MOTION = scopeConfig(["plant.x", "plant.y"], { windowMs: 2 });
 const FORCES = scopeConfig(["drive.x.force", "drive.y.force"], { windowMs: 2 });
 const QUADRATURE = scopeConfig(["@active.quadrature"], { windowMs: 500 });
 
-/** Below the rate: the forces that move the mass, and its path. */
-function addBelow(api: DockviewApi, beside: boolean): void {
+/** Below the rate the forces that move the mass; and its path, where it has a place of its own. */
+function addBelow(api: DockviewApi, path?: { right: "forces" } | { below: "view3d" }): void {
   addTo(api, "forces", "time", { below: "rate" }, FORCES, "Forces");
-  addTo(api, "locus", "locus", beside ? { right: "forces" } : { within: "forces", inactive: true });
-  addBehind(api, "rate", beside ? ["lanes", "allan"] : ["lanes"]);
-  if (!beside) return;
+  addTo(api, "locus", "locus", path ?? { within: "forces", inactive: true });
+  addBehind(api, "rate", path ? ["lanes", "allan"] : ["lanes"]);
+  if (!path) return;
   addTo(api, "motion", "time", { within: "forces", inactive: true }, MOTION, "Motion x, y");
   addTo(api, "quadrature", "time", { within: "rate", inactive: true }, QUADRATURE, "Quadrature");
 }
@@ -38,7 +38,7 @@ export const BUILT_IN_AXES: Layouts = {
     const wide = width >= THREE_COLUMNS_PX;
     addBehind(api, "controllers", ["faults"]);
     addBehind(api, "schematic", ["device"]);
-    addBelow(api, wide);
+    addBelow(api, wide ? { right: "forces" } : undefined);
     addBehind(api, wide ? "rate" : "forces", ["sheet"]);
     if (wide) {
       addBehind(api, "rate", ["why", "narrator", "claims"]);
@@ -58,16 +58,15 @@ export const BUILT_IN_AXES: Layouts = {
     addTo(api, "controllers", "controllers", { below: "schematic" });
     addBehind(api, "controllers", ["faults"]);
     addTo(api, "view3d", "view3d", wide ? { right: "rate" } : { within: "schematic", inactive: true });
-    addBelow(api, wide);
+    addBelow(api, wide ? { below: "view3d" } : undefined);
     addBehind(api, wide ? "schematic" : "forces", ["device"]);
     if (wide) {
-      addTo(api, "why", "why", { below: "view3d" });
-      addBehind(api, "why", ["narrator", "claims"]);
-      addBehind(api, "view3d", ["twins"]);
+      addBehind(api, "locus", ["why", "narrator"]);
+      addBehind(api, "view3d", ["twins", "claims"]);
     }
     size(api, width, height, {
       schematic: { w: Math.max(0.25, LOOP_PX.width / width), h: Math.max(0.36, LOOP_PX.height / height) },
-      ...(wide ? { view3d: { w: 0.25, h: 0.4 }, forces: { w: 0.27 } } : {}),
+      ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
       rate: { h: 0.48 },
     });
   },
