@@ -47,6 +47,7 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
   const scheme = useScheme();
   const fontSize = useView((s) => s.fontPx);
   const dtMs = useBench((s) => s.bench?.dt_ms);
+  const isBlind = useBench((s) => Boolean(s.bench?.blind));
   const traces = useTraces(config.signals, drives);
   const behind = useBehind((s) => s.behind);
   const difference = useBehind((s) => s.difference);
@@ -154,11 +155,12 @@ export function ScopePanel({ config: kept, onChange }: ScopePanelProps) {
       </ScopeToolbar>
       {traces.length === 0 ? (
         <EmptyState
-          title="Nothing on this scope"
+          title={isBlind && kept.signals.length > 0 ? "Hidden until you answer" : "Nothing on this scope"}
           action={<PresetButtons onChoose={(chosen) => onChange({ ...config, signals: chosen })} />}
         >
-          Pick signals with +, or begin with a set. Every signal of the bench can be shown, taps inside the blocks
-          included.
+          {isBlind
+            ? "Pick signals with +, or begin with a set. Signals that would tell the fault are hidden."
+            : "Pick signals with +, or begin with a set. Every signal of the bench can be shown, taps inside the blocks included."}
         </EmptyState>
       ) : (
         <>

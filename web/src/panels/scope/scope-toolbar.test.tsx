@@ -1,4 +1,4 @@
-import { screen, within } from "@testing-library/react";
+import { act, screen, within } from "@testing-library/react";
 import { useState } from "react";
 import { beforeEach, expect, it, vi } from "vitest";
 import { type ScopeConfig, scopeConfig } from "../../stream/scope-config";
@@ -136,6 +136,16 @@ it("shows the newest value of each signal with its unit", async () => {
 it("says that nothing is on it", () => {
   mountScope([]);
   expect(screen.getByText("Nothing on this scope")).toBeVisible();
+});
+
+it("says that its signals are hidden while a fault is, and no longer after the answer", () => {
+  const board = connect(small);
+  const hidden = small.signals.filter(({ name }) => name !== VOLTAGE);
+  board.hello({ ...small, signals: hidden, blind: { id: "question-1" } as never });
+  mount(<ScopePanel config={scopeConfig([VOLTAGE])} onChange={() => undefined} />);
+  expect(screen.getByText("Hidden until you answer")).toBeVisible();
+  act(() => board.hello(small));
+  expect(screen.queryByText("Hidden until you answer")).not.toBeInTheDocument();
 });
 
 it("says that a band is the envelope of a fast tone, and no longer in a short window", async () => {
