@@ -124,7 +124,7 @@ def pool(workers: int, niceness: int = 0, signs: Signs | None = None) -> Process
 
 
 def preload(module: str) -> None:
-    """Let processes be forked from one that has loaded this module too; processes that run already are as they are."""
+    """Load a module in the parent of all processes that start after this."""
     if module not in _preloaded:
         _preloaded.insert(0, module)  # the common data come last, and freeze all loaded objects
 
