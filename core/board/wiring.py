@@ -293,8 +293,10 @@ def signal_name(instance: Instance, port: str) -> str:
 
 
 def _source(spec: Spec, instance: Instance, port: Port, index: dict[str, int]) -> str:
-    source = port.source.replace("{axis}", instance.axis)
-    source = source.replace("{diagnoser}", getattr(instance.params, "diagnoser", ""))
+    source = port.source
+    if "{" in source:
+        source = source.replace("{axis}", instance.axis)
+        source = source.replace("{diagnoser}", getattr(instance.params, "diagnoser", ""))
     if source.endswith("?"):
         signal = source.removesuffix("?")
         return signal if signal in index else NOTHING
