@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import budget
 from tests.budget import ALLOWED
 
 LEAVES_OUT = re.compile(
@@ -73,3 +74,11 @@ def test_the_rules_find_a_test_that_is_not_collected(tmp_path: Path) -> None:
     file.write_text("def test_a(): ...\nasync def test_b(): ...\nclass TestC:\n    def test_d(self): ...\n")
     assert collected(file) == ["TestC::test_d", "test_a", "test_b"]
     assert all(LEAVES_OUT.search(text) for text in ("collect_ignore = []", "--ignore=tests/core", "__test__ = False"))
+
+
+def test_a_test_fails_only_by_a_unit_of_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(budget, "first_unit_s", lambda: 1.0)
+    monkeypatch.setattr(budget, "unit_s", lambda: 2.0)  # the machine is busy now
+    assert [budget.units_of(seconds) for seconds in (5.0, 8.0, 14.0)] == [5.0, 4.0, 7.0]
+    monkeypatch.setattr(budget, "unit_s", lambda: 0.5)
+    assert budget.units_of(8.0) == 8.0
