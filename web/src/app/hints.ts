@@ -3,7 +3,7 @@ import type { Bench, LogEntry } from "../api/types";
 import { cardOf } from "../api/use-catalog";
 
 /** Something to try, and the event that says that it was done. */
-export interface Hint {
+interface Hint {
   id: string;
   text: string;
   isDone(event: LogEntry): boolean;

@@ -91,7 +91,7 @@ export function parseValues(text: string): unknown[] {
 const filled = <T extends { path: string }>(rows: readonly T[]) => rows.filter((row) => row.path.trim() !== "");
 
 /** How many rows CSV text has below its header. */
-export const rowCount = (text: string) => Math.max(0, text.split("\n").filter((line) => line.trim() !== "").length - 1);
+const rowCount = (text: string) => Math.max(0, text.split("\n").filter((line) => line.trim() !== "").length - 1);
 
 /** How many points a campaign has. */
 export function pointCount(draft: Draft): number {
@@ -165,4 +165,4 @@ export function pathTitle(path: string): string {
 }
 
 /** Parts of a scenario that are about it. */
-export const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];
+const HEAD = ["schema", "id", "title", "source", "summary", "claim", "verdict", "metrics"];

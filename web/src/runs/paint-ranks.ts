@@ -3,7 +3,7 @@ import type { Box, Look, Pen } from "../picture/pen";
 import { paintDot, paintRule, within } from "../picture/traces";
 import { CANVAS, TRACE_COLOURS } from "../ui/palette";
 
-export interface Rank {
+interface Rank {
   name: string;
   value: number;
   /** Half the length of its error bar. */

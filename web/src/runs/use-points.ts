@@ -14,7 +14,7 @@ const BUSY_MS = 2000;
 const FIRST_MS = 200;
 
 /** The sort order of a table of points. */
-export interface Order {
+interface Order {
   id: string;
   down: boolean;
 }

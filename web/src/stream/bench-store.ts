@@ -3,7 +3,7 @@ import type { Bench, LogEntry, Score } from "../api/types";
 import type { CloseReason } from "./close-reason";
 import { type Narration, NOTHING_SAID } from "./narration";
 
-export type Phase = "idle" | "connecting" | "open" | "waiting" | "closed";
+type Phase = "idle" | "connecting" | "open" | "waiting" | "closed";
 
 export interface Connection {
   phase: Phase;

@@ -4,7 +4,7 @@ import { roundTo } from "../ui/unit-scale";
 /** Coefficients, lowest power first. */
 export type Polynomial = readonly number[];
 
-export function trimmed(p: Polynomial): Polynomial {
+function trimmed(p: Polynomial): Polynomial {
   let length = p.length;
   while (length > 1 && p[length - 1] === 0) length -= 1;
   return p.slice(0, length);

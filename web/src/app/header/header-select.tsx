@@ -7,7 +7,7 @@ import { useBoardState } from "../../stream/freshness";
 import { Prose } from "../../ui/prose";
 import styles from "./header.module.css";
 
-export interface Choice {
+interface Choice {
   value: string;
   title: string;
   /** A line of words about it. */

@@ -9,7 +9,7 @@ import { ParameterRow } from "./parameter-row";
 import { parameterTitle } from "./parameter-title";
 
 /** Parameters of a block on the bench, with a title where several blocks are listed. */
-export interface BlockParameters {
+interface BlockParameters {
   title?: string;
   instance: Instance;
   parameters: Parameter[];

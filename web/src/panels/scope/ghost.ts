@@ -12,7 +12,7 @@ export interface Ghost {
 }
 
 /** The ghost is drawn this much later than it was: whole periods, so that it is in phase with the live trace. */
-export function shiftOf(period: Ghost["period"], elapsed: number): number {
+function shiftOf(period: Ghost["period"], elapsed: number): number {
   return period ? Math.ceil(elapsed / period) * period : elapsed;
 }
 
