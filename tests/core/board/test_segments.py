@@ -240,6 +240,7 @@ def test_a_gyroscope_with_everything_is_fused_to_the_bit() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(1800)
 def test_every_block_of_the_library_is_fused_to_the_bit() -> None:
     """With all blocks of a scenario, as a live bench has them, and its events."""
     seen = set[type[Block]]()
