@@ -309,9 +309,10 @@ def test_students_who_check_large_scenarios_cost_another_neither_time_nor_sample
         ada.ask("POST", f"/api/v1/benches/{ada.bench}/commands", json={"kind": "start"})
         check = partial(ada.ask, "POST", CHECK, json={"scenario": events(1)})
         alone = mean_s(10, check)
-        before = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["overruns"]
+        before = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["given_up_ms"]
         for student in busy:
             large = partial(student.ask, "POST", CHECK, json={"scenario": events(1000)})
             others.enter_context(timed(large, served.pid))
         assert mean_s(10, check) - alone < 1.0
-        assert ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["overruns"] == before
+        given_up_ms = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["given_up_ms"] - before
+        assert given_up_ms < 100.0, "a busy machine takes some; checks in the process of the bench would take seconds"
