@@ -1,8 +1,8 @@
 """The time each test may take, in processor time of a loop that is timed in the same process.
 
 A test above `MOST` units fails, unless it belongs to the long suite or `ALLOWED` names it with a reason; one above
-`MANY` is listed at the end. Processor time of a busy machine is longer too, so the loop is timed again before a test
-fails. A unit is about a second of a machine of 2024.
+`MANY` is listed at the end. Processor time of a busy machine is longer too, so the loop is timed again before a test is
+listed or fails. A unit is about a second of a machine of 2024.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ def first_unit_s() -> float:
 
 
 def units_of(seconds: float) -> float:
-    """Return a processor time in units; where it is too long by the first unit, by a unit of now."""
+    """Return a processor time in units of now; a short one in units of the first timing."""
     units = seconds / first_unit_s()
-    return units if units <= MOST else seconds / max(first_unit_s(), unit_s())
+    return units if units <= MANY else seconds / unit_s()
 
 
 def _loop_s() -> float:

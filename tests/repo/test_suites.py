@@ -76,9 +76,8 @@ def test_the_rules_find_a_test_that_is_not_collected(tmp_path: Path) -> None:
     assert all(LEAVES_OUT.search(text) for text in ("collect_ignore = []", "--ignore=tests/core", "__test__ = False"))
 
 
-def test_a_test_fails_only_by_a_unit_of_now(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_test_is_listed_and_fails_by_a_unit_of_now(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(budget, "first_unit_s", lambda: 1.0)
-    monkeypatch.setattr(budget, "unit_s", lambda: 2.0)  # the machine is busy now
-    assert [budget.units_of(seconds) for seconds in (5.0, 8.0, 14.0)] == [5.0, 4.0, 7.0]
-    monkeypatch.setattr(budget, "unit_s", lambda: 0.5)
-    assert budget.units_of(8.0) == 8.0
+    for now_s, units in ((2.0, [1.5, 2.5, 4.0, 7.0]), (0.5, [1.5, 10.0, 16.0, 28.0])):
+        monkeypatch.setattr(budget, "unit_s", lambda now_s=now_s: now_s)
+        assert [budget.units_of(seconds) for seconds in (1.5, 5.0, 8.0, 14.0)] == units

@@ -9,13 +9,12 @@ import time
 from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import httpx
-import psutil
 import pytest
 
 from core.errors import InputError
@@ -214,29 +213,29 @@ def test_a_check_says_what_it_said_and_compiles_nothing(live: Live) -> None:
 
 
 def delayed_s(pid: int) -> float:
-    """Return how long a server and this thread have waited for a processor of the machine, s: that is not its doing."""
-    files = (f"/proc/{pid}/schedstat", "/proc/thread-self/schedstat")
-    return sum(1e-9 * float(Path(file).read_text().split()[1]) for file in files)
+    """Return how long the threads of a server and this thread have waited for a processor of the machine, s.
 
-
-def used_s(pid: int) -> float:
-    """Return the processor time of the threads of a server, s."""
-    return float(sum(psutil.Process(pid).cpu_times()[:2]))
+    That is not the server's doing: a thread that waits may hold the lock of the interpreter for which another waits.
+    """
+    waited = 0.0
+    for file in [*Path(f"/proc/{pid}/task").glob("*/schedstat"), Path("/proc/thread-self/schedstat")]:
+        with suppress(FileNotFoundError, ProcessLookupError):  # a thread that has ended
+            waited += 1e-9 * float(file.read_text().split()[1])
+    return waited
 
 
 @contextmanager
 def timed(ask: Callable[[], httpx.Response], pid: int) -> Iterator[list[float]]:
-    """Ask again and again; note how long the server takes for each answer, s: at most the processor time it used."""
+    """Ask again and again; note how long the server takes for each answer, s."""
     took: list[float] = []
     stop = threading.Event()
 
     def go_on() -> None:
         ask()  # now there is a connection
         while not stop.is_set():
-            begun, delayed, used = time.perf_counter(), delayed_s(pid), used_s(pid)
+            begun, before = time.perf_counter(), delayed_s(pid)
             assert ask().status_code in (200, 429)
-            passed = time.perf_counter() - begun - (delayed_s(pid) - delayed)
-            took.append(min(passed, used_s(pid) - used))
+            took.append(time.perf_counter() - begun - (delayed_s(pid) - before))
 
     thread = threading.Thread(target=go_on)
     thread.start()
@@ -309,10 +308,11 @@ def test_students_who_check_large_scenarios_cost_another_neither_time_nor_sample
         ada.ask("POST", f"/api/v1/benches/{ada.bench}/commands", json={"kind": "start"})
         check = partial(ada.ask, "POST", CHECK, json={"scenario": events(1)})
         alone = mean_s(10, check)
+        delayed = delayed_s(served.pid)
         before = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["given_up_ms"]
         for student in busy:
             large = partial(student.ask, "POST", CHECK, json={"scenario": events(1000)})
             others.enter_context(timed(large, served.pid))
         assert mean_s(10, check) - alone < 1.0
         given_up_ms = ada.ask("GET", f"/api/v1/benches/{ada.bench}").json()["given_up_ms"] - before
-        assert given_up_ms < 100.0, "a busy machine takes some; checks in the process of the bench would take seconds"
+        assert given_up_ms <= 1e3 * (delayed_s(served.pid) - delayed), "more than the machine took"
