@@ -120,7 +120,7 @@ const layoutsAround = (scopes: Scope[]): Layouts => ({
     if (wide) addBehind(api, "lanes", ["identify", "twins", "narrator", "claims"]);
     size(api, width, height, {
       schematic: { w: Math.max(0.26, LOOP_PX.width / width), h: Math.max(0.34, LOOP_PX.height / height) },
-      motion: { h: 0.48 },
+      motion: { h: 0.5 },
     });
   },
   research(api, width, height) {
@@ -141,7 +141,7 @@ const layoutsAround = (scopes: Scope[]): Layouts => ({
     size(api, width, height, {
       schematic: { w: Math.max(0.225, LOOP_PX.width / width), h: Math.max(0.32, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.45 } } : {}),
-      motion: { h: 0.48 },
+      motion: { h: 0.5 },
     });
   },
 });

@@ -28,7 +28,7 @@ export const BUILT_IN_AXES: Layouts = {
     addBehind(api, wide ? "controllers" : "locus", ["faults"]);
     addTo(api, "view3d", "view3d", wide ? { right: "locus" } : { within: "locus", inactive: true });
     const list = Math.max(0.36, LIST_PX / width);
-    size(api, width, height, { controllers: { w: list }, locus: { h: 0.52 } });
+    size(api, width, height, { controllers: { w: list }, locus: { h: 0.44 } });
     if (wide) size(api, width, height, { locus: { w: 0.32 } });
   },
   lab(api, width, height) {
@@ -47,8 +47,8 @@ export const BUILT_IN_AXES: Layouts = {
     const loops = Math.max(0.28, LOOP_PX.width / width);
     size(api, width, height, {
       schematic: { w: loops, h: Math.max(0.4, LOOP_PX.height / height) },
-      rate: { h: 0.48 },
-      ...(wide ? { forces: { w: 0.58 * (1 - loops) } } : {}),
+      rate: { h: 0.5 },
+      ...(wide ? { forces: { w: 0.65 * (1 - loops) } } : {}),
     });
   },
   research(api, width, height) {
@@ -67,7 +67,7 @@ export const BUILT_IN_AXES: Layouts = {
     size(api, width, height, {
       schematic: { w: Math.max(0.25, LOOP_PX.width / width), h: Math.max(0.36, LOOP_PX.height / height) },
       ...(wide ? { view3d: { w: 0.25, h: 0.4 } } : {}),
-      rate: { h: 0.48 },
+      rate: { h: 0.5 },
     });
   },
 };

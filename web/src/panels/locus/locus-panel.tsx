@@ -22,7 +22,7 @@ const WORDS: Record<string, string> = {
 /** The path of the mass in its plane, with the tilt of its long axis; and the path of a partner. */
 export function LocusPanel() {
   const axes = useBench((s) => s.bench?.axes);
-  const words = useBench((s) => WORDS[s.bench?.controller ?? ""]);
+  const meaning = useBench((s) => WORDS[s.bench?.controller ?? ""]);
   const [windowMs, setWindowMs] = useState(2);
   const [stretched, setStretched] = useState(true);
   const painted = useRef<LocusShown | undefined>(undefined);
@@ -49,8 +49,7 @@ export function LocusPanel() {
         />
         <PictureMenu take={() => painted.current && locusPicture(painted.current)} />
       </Group>
-      <LocusPlot masses={masses} windowMs={windowMs} stretched={stretched} painted={painted} />
-      {words && <p className={styles.words}>{words}</p>}
+      <LocusPlot masses={masses} windowMs={windowMs} stretched={stretched} painted={painted} meaning={meaning} />
     </section>
   );
 }

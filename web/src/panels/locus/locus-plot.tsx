@@ -23,10 +23,12 @@ interface LocusPlotProps {
   stretched: boolean;
   /** Keeps the newest picture. */
   painted: RefObject<LocusShown | undefined>;
+  /** The meaning of the path. */
+  meaning?: string;
 }
 
 /** The canvas of a locus, and the tilt of each trace in words. */
-export function LocusPlot({ masses, windowMs, stretched, painted }: LocusPlotProps) {
+export function LocusPlot({ masses, windowMs, stretched, painted, meaning }: LocusPlotProps) {
   const names = useMemo(() => masses.flatMap(({ x, y }) => [x, y]), [masses]);
   const traces = useTraces(names);
   const words = useRef<(HTMLElement | null)[]>([]);
@@ -62,7 +64,7 @@ export function LocusPlot({ masses, windowMs, stretched, painted }: LocusPlotPro
   };
 
   return (
-    <>
+    <div className={styles.parts}>
       <LiveCanvas
         label="Path of the mass: y over x"
         subscription={subscription}
@@ -71,19 +73,22 @@ export function LocusPlot({ masses, windowMs, stretched, painted }: LocusPlotPro
         }}
         paint={paint}
       />
-      <p className={styles.words}>
-        {masses.map(({ name, x }, i) => (
-          <span key={name} style={{ marginRight: 16 }}>
-            <TraceSwatch colour={traces.find((t) => t.name === x)?.colour ?? ""} dash={0} /> {name}: long axis{" "}
-            <b
-              data-testid="tilt"
-              ref={(place) => {
-                words.current[i] = place;
-              }}
-            />
-          </span>
-        ))}
-      </p>
-    </>
+      <div>
+        <p className={styles.words}>
+          {masses.map(({ name, x }, i) => (
+            <span key={name} style={{ marginRight: 16 }}>
+              <TraceSwatch colour={traces.find((t) => t.name === x)?.colour ?? ""} dash={0} /> {name}: long axis{" "}
+              <b
+                data-testid="tilt"
+                ref={(place) => {
+                  words.current[i] = place;
+                }}
+              />
+            </span>
+          ))}
+        </p>
+        {meaning && <p className={styles.words}>{meaning}</p>}
+      </div>
+    </div>
   );
 }
