@@ -111,19 +111,21 @@ def test_a_scenario_holds_at_fifty_seeds(name: str) -> None:
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("name", ids())
 def test_an_expectation_holds_at_drawn_seeds(name: str, drawn_seed: int) -> None:
-    """Three times fifty seeds are drawn, and all expectations of the library are judged together.
+    """Fifty seeds are drawn, and a hundred more if an expectation misses at more than 2; all rows are judged together.
 
-    If each of its R expectations misses at 5 % of all seeds, the number of misses among 150 is binomial, and some
-    expectation has more than k of them with a chance of at most R P(X > k). The bound is the least k for which that is
-    below one in a million.
+    If each of the R expectations of the library misses at 5 % of all seeds, the number of misses among 150 is binomial,
+    and some expectation has more than k of them with a chance of at most R P(X > k). The bound is the least k for which
+    that is below one in a million. The end after fifty can only lower that chance; an expectation that misses at a
+    fifth of all seeds ends there with a chance of 0.13 %.
     """
     rows = sum(len(scenario.head.expect) for scenario in library())
-    seeds = 3 * len(FIFTY)
-    most = int(binom.isf(CHANCE / rows, seeds, SHARE))
+    most = int(binom.isf(CHANCE / rows, 3 * len(FIFTY), SHARE))
     scenario, found = get(name), Counter[str]()
     for part in range(3) if scenario.head.expect else ():
         first = (drawn_seed + part * 333_333_333) % 10**9 + 10_000
         found += missed(scenario, range(first, first + len(FIFTY)))
+        if max(found.values(), default=0) <= MOST_OF_FIFTY:
+            return
     assert {metric: n for metric, n in found.items() if n > most} == {}, f"most {most}"
 
 

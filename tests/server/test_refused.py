@@ -51,7 +51,7 @@ def test_what_is_refused_for_want_of_the_database_has_not_happened(
     who, ids, body = CASES[door](world)
     method, path = door[0], door[1].format(**ids) + ids.get("?", "")
     sent = {} if body is None else {"content" if isinstance(body, bytes) else "json": body}
-    injector = Injector(monkeypatch)
+    injector = Injector(world.live, monkeypatch)
     for calls in range(40):
         before = world.state()
         injector.arm(calls)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -138,21 +139,27 @@ class World:
 
 
 class Injector:
-    """Fails one database call, counted from a given moment."""
+    """Fails one database call, counted from a given moment; calls of tasks that ran before go through."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.left, self.has_failed = -1, False
+    def __init__(self, live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.live, self.left, self.has_failed = live, -1, False
+        self.others = set[asyncio.Task[Any]]()
         run = Database.run
 
         async def failing(database: Database, work: Any) -> Any:
-            self.left -= 1
-            if self.left == -1 and self.is_armed:
-                self.has_failed = True
-                raise OperationalError("a statement", {}, Exception("the database is gone"))
+            if asyncio.current_task() not in self.others:
+                self.left -= 1
+                if self.left == -1 and self.is_armed:
+                    self.has_failed = True
+                    raise OperationalError("a statement", {}, Exception("the database is gone"))
             return await run(database, work)
 
         self.is_armed = False
         monkeypatch.setattr(Database, "run", failing)
 
     def arm(self, calls: int) -> None:
+        async def tasks() -> set[asyncio.Task[Any]]:
+            return asyncio.all_tasks()
+
+        self.others = self.live.on_loop(tasks())
         self.left, self.has_failed, self.is_armed = calls, False, True

@@ -30,8 +30,11 @@ if (!root) throw new Error("the page has no #root");
 /** Where the bench of a page without a server is. */
 const folder = document.querySelector<HTMLMetaElement>("meta[name=bench]")?.content;
 
+/** A page whose font is late is shown after this time. */
+const FONT_MS = 2000;
+
 const page = createRoot(root);
-begin().then(
+Promise.all([begin(), font()]).then(
   () => show(isPresenter() ? <Presenter /> : <App />),
   (error: unknown) => show(<NotLaunched error={error} />),
 );
@@ -44,6 +47,12 @@ async function begin() {
   }
   const { startFolder } = await import("../in-a-folder/start-folder");
   setStream(createStream(startFolder(new URL(folder, document.baseURI))));
+}
+
+/** Wait for the font: tabs would move when it comes, and a click in the middle of a tab would meet its cross. */
+async function font(): Promise<void> {
+  const loaded = document.fonts.load('1em "IBM Plex Sans Variable"').catch(() => undefined);
+  await Promise.race([loaded, new Promise((resolve) => window.setTimeout(resolve, FONT_MS))]);
 }
 
 function show(content: ReactNode) {

@@ -175,7 +175,7 @@ def test_a_platform_that_is_not_configured_begins_nothing(browser: Browser) -> N
 def test_a_launch_that_the_database_refuses_leaves_no_second_class_and_no_second_student(
     lab: Live, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    injector, calls = Injector(monkeypatch), 0
+    injector, calls = Injector(lab, monkeypatch), 0
     while True:
         answer = browser.launch()
         injector.arm(calls)
