@@ -139,7 +139,7 @@ class World:
 
 
 class Injector:
-    """Fails one database call, counted from a given moment; calls of tasks that ran before go through."""
+    """Fails one database call of a server, counted from a given moment; calls of tasks that ran before go through."""
 
     def __init__(self, live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
         self.live, self.left, self.has_failed = live, -1, False
@@ -147,7 +147,7 @@ class Injector:
         run = Database.run
 
         async def failing(database: Database, work: Any) -> Any:
-            if asyncio.current_task() not in self.others:
+            if database is live.service.database and asyncio.current_task() not in self.others:
                 self.left -= 1
                 if self.left == -1 and self.is_armed:
                     self.has_failed = True
