@@ -22,7 +22,7 @@ from core.board.filling import fill
 from core.board.fold import NONE, SHIFTS, A, B, Words
 from core.board.instances import instances
 from core.board.lane import Lane
-from core.board.lane_traces import LaneTraces
+from core.board.lane_traces import LaneTraces, at_a_line
 from core.board.pattern import Pattern, Uneven, is_same_structure
 from core.board.pending import PendingQueue
 from core.board.program import EVERY, P_OFFSET, walk
@@ -34,9 +34,6 @@ from core.compile.keeping import SLICE
 from core.compile.machine import WIDTH
 from core.kernel import kernel
 from core.ports import RESERVED, TICK, TIME_MS
-
-ALIGNMENT = 8
-"""Numbers of a cache line, at which rows of lanes begin."""
 
 
 @kernel
@@ -292,9 +289,6 @@ def apart(wiring: Wiring) -> Wiring:
 
 def lanes_of(array: FloatArray, width: int, groups: int = 1) -> FloatArray:
     """Return for each group an array with a column for each board, its rows at the beginning of a cache line."""
-    size = array.size * width * groups
-    room = np.empty(size + ALIGNMENT)
-    start = -(room.ctypes.data // 8) % ALIGNMENT
-    found = room[start : start + size].reshape(groups, -1, width)
+    found = at_a_line((groups, array.size, width))
     found[:] = array[:, None]
     return found

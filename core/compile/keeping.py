@@ -20,6 +20,8 @@ HALF = EDGE // 2
 LOW, HIGH = ([first + i + side for i in range(HALF) for side in (0, EDGE)] for first in (0, HALF))
 """Numbers of two vectors in turn: of their lower halves, and of their upper halves."""
 LINE = ir.VectorType(DOUBLE, EDGE)
+LINE_BYTES = 8 * EDGE
+"""A line of the cache; traces begin at one, and the columns of each board too."""
 
 
 @cache
@@ -64,11 +66,13 @@ def sorts(width: int) -> ir.Module:
     """Write the function that sorts by board, of so many boards, the signals kept in a slice.
 
     It takes four pointers: to the kept signals, shape (``SLICE``, kept, ``width``); to the first tick of the slice in a
-    trace of shape (kept, ``width``, ticks); to nothing; and to the numbers of signals and ticks of the trace.
+    trace of shape (kept, ``width``, ticks); to nothing; and to the numbers of signals and ticks of the trace. The ticks
+    are a multiple of ``EDGE``. The trace of a long run would fill the cache, so its lines go past it.
     """
     module, builder, (rows, trace, _, sizes) = begun([POINTER, POINTER, PLACES, PLACES])
     kept, ticks = (builder.load(builder.gep(sizes, [ir.Constant(I64, number)])) for number in range(2))
     across = builder.mul(kept, ir.Constant(I64, width))
+    past_cache = module.add_metadata([ir.Constant(ir.IntType(32), 1)])
     orders = [ir.Constant(ir.VectorType(ir.IntType(32), EDGE), order) for order in (LOW, HIGH)]
     with counted(builder, kept) as column, counted(builder, ir.Constant(I64, SLICE), EDGE) as tick:
         for board in range(0, width, EDGE):
@@ -79,7 +83,8 @@ def sorts(width: int) -> ir.Module:
                 lines = [builder.shuffle_vector(*pair, order) for pair in pairs for order in orders]
             corner = _at(builder, trace, DOUBLE, (column, builder.mul(ticks, ir.Constant(I64, width))), (tick, 1))
             for i, line in enumerate(lines):
-                builder.store(line, _at(builder, corner, LINE, (board + i, ticks)), align=8)
+                stored = builder.store(line, _at(builder, corner, LINE, (board + i, ticks)), align=LINE_BYTES)
+                stored.set_metadata("nontemporal", past_cache)
     builder.ret_void()
     return module
 

@@ -9,6 +9,7 @@ import pytest
 
 from core import kernel_cache
 from core.board import fold
+from core.board.lane_traces import at_a_line
 from core.compile import code
 from core.compile.folding import folds_of_tick
 from core.compile.instructions import address_of, call
@@ -64,6 +65,7 @@ def test_signals_and_sums_are_kept_of_each_board(two_widths: Any) -> None:
 def test_kept_signals_are_sorted_by_board(two_widths: Any) -> None:
     nothing, shape = np.zeros(1, dtype=np.int64), np.array([2, 2 * SLICE])
     for width, address in two_widths(sorts).items():
-        rows, trace = np.random.default_rng(width).normal(size=(SLICE, 2, width)), np.zeros((2, width, 2 * SLICE))
+        rows, trace = np.random.default_rng(width).normal(size=(SLICE, 2, width)), at_a_line((2, width, 2 * SLICE))
+        trace[:] = 0.0
         call(address, address_of(rows), address_of(trace) + 8 * SLICE, *map(address_of, (nothing, shape)))
         assert (trace[:, :, SLICE:] == rows.transpose(1, 2, 0)).all() and not trace[:, :, :SLICE].any(), width
