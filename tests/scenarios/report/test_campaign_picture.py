@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from scipy.stats import spearmanr
 
 from core.errors import InputError
 from scenarios.campaign.sweep import Sweep
@@ -100,6 +101,16 @@ def test_a_ranking_has_the_numbers_in_the_order_of_their_rank_correlation() -> N
     assert [one.correlation for one in flat.ranking] == [0.0] * 3
     other = picture_of(sweep, lambda v: v["sensor.noise_um"], across="reference.offset_um")
     assert other.across == "reference.offset_um" and other.ranking[0].name == "sensor.noise_um"
+
+
+def test_a_ranking_is_spearman_s_also_of_equal_numbers() -> None:
+    sweep = sweep_of(latin_hypercube={"points": 40, "ranges": RANGES})
+    shown = picture_of(sweep, lambda v: np.round(4.0 * v["sensor.noise_um"] / v["reference.amplitude_um"], 1))
+    drawn = {name: np.array([point.values[name] for point in sweep.points]) for name in RANGES}
+    means = np.round(4.0 * drawn["sensor.noise_um"] / drawn["reference.amplitude_um"], 1)
+    assert len(np.unique(means)) < len(means)
+    for one in shown.ranking:
+        assert one.correlation == pytest.approx(spearmanr(drawn[one.name], means)[0], abs=1e-12), one.name
 
 
 def test_drawn_devices_are_ranked_by_what_was_drawn_and_not_by_their_number() -> None:
