@@ -56,39 +56,67 @@ class NumberedTranslation(Translation):
         return None
 
 
+@dataclass(frozen=True)
+class _Part:
+    """A function of a module: its name on the shelf, its instructions, and how they name it."""
+
+    kept_as: str
+    write: Callable[[], str]
+    function: str = NAME
+
+    def get(self) -> Any:
+        """Return a module with this function alone, from the shelf if the shelf has it."""
+        kept = get(self.kept_as)
+        if kept is None:
+            part = target.aimed(self.write())
+            target.improve(part, {self.function}, vectors=True)
+            kept = part.as_bitcode()
+            put(self.kept_as, kept)
+        return llvm.parse_bitcode(kept)  # a new part too: its order in memory differs, and so might the module's code
+
+
 def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segment]) -> bytes:
-    """Return the module of some kernels, steps and segments; parts of it that are not on the shelf are put there.
+    """Return the module of some kernels, steps and segments; the module and its parts are kept on the shelf.
 
     Raises
     ------
     InputError
         When a step calls a function that the machine does not have.
     """
-    module = target.aimed(_dispatch(len(steps)))
-    for number, step in enumerate(steps):
-        piece = segment.piece(step) if isinstance(step, tuple) else code.step(step)
-        part = _part(f"wasm-{piece.name}-{digest(piece.hash(bytecode), _own())}", piece.write)
-        if missing := {*target.asked_for(part)} - LENT:
-            name = "a segment" if isinstance(step, tuple) else step.name
-            raise InputError(f"{name} calls {', '.join(sorted(missing))}, which no browser has")
-        part.get_function(NAME).name = f"{NAME}_{number}"
-        module.link_in(part)
-    for name, kernel in kernels.items():
-        content = digest(key(kernel.function), name, kernel.kinds, compiler(), _own())
-        module.link_in(_part(f"wasm-{name}-{content}", partial(instructions, name, kernel), name))
-    target.improve(module, {*kernels}, vectors=True)
-    return target.emitted(module, vectors=True)
-
-
-def _part(name: str, write: Callable[[], str], function: str = NAME) -> Any:
-    """Return a module with one function, from the shelf if the shelf has it."""
+    own = [_part_of(step) for step in steps]
+    offered = [_offered(name, kernel) for name, kernel in kernels.items()]
+    name = f"wasm-{digest(*(part.kept_as for part in (*own, *offered)))}"
     kept = get(name)
     if kept is None:
-        part = target.aimed(write())
-        target.improve(part, {function}, vectors=True)
-        kept = part.as_bitcode()
+        kept = _joined(offered, steps, own)
         put(name, kept)
-    return llvm.parse_bitcode(kept)  # a new part too: its order in memory differs, and so might the code of the module
+    return kept
+
+
+def _part_of(step: Block | Segment) -> _Part:
+    piece = segment.piece(step) if isinstance(step, tuple) else code.step(step)
+    return _Part(f"wasm-{piece.name}-{digest(piece.hash(bytecode), _own())}", piece.write)
+
+
+def _offered(name: str, kernel: OfferedKernel) -> _Part:
+    content = digest(key(kernel.function), name, kernel.kinds, compiler(), _own())
+    return _Part(f"wasm-{name}-{content}", partial(instructions, name, kernel), name)
+
+
+def _joined(offered: Sequence[_Part], steps: Sequence[Block | Segment], parts: Sequence[_Part]) -> bytes:
+    """Return the module of some kernels and of the steps that they call by their numbers, each a function."""
+    module = target.aimed(_dispatch(len(steps)))
+    for number, (step, part) in enumerate(zip(steps, parts, strict=True)):
+        function = part.get()
+        if missing := {*target.asked_for(function)} - LENT:
+            name = "a segment" if isinstance(step, tuple) else step.name
+            raise InputError(f"{name} calls {', '.join(sorted(missing))}, which no browser has")
+        function.get_function(NAME).name = f"{NAME}_{number}"
+        module.link_in(function)
+    for part in offered:
+        module.link_in(part.get())
+    # not improved as a whole: all steps in one function take seconds to compile, here and in the browser
+    return target.emitted(module, vectors=True)
 
 
 @cache

@@ -15,6 +15,8 @@ from core.compile.segment import SegmentStep
 from core.errors import InputError
 from core.kernel import kernel
 from core.wall.host import machine
+from core.wasm import module as wasm
+from core.wasm import target
 from core.wasm.module import OfferedKernel, module_of
 
 PAGE = 1 << 16
@@ -110,6 +112,22 @@ def test_a_segment_is_called_by_its_number_and_runs_its_steps_in_their_order(ste
     assert signals.tolist() == [0.0, 0.0, 1.25, 2.5, 7.5]  # the place of port 0 is known, so it is not read
 
 
+def test_a_module_is_kept_whole_under_its_steps_in_their_order(
+    step_of: Callable[[float], Any], monkeypatch: pytest.MonkeyPatch
+):
+    shelf, made, emitted = dict[str, bytes](), [], target.emitted
+    monkeypatch.setattr(wasm, "get", shelf.get)
+    monkeypatch.setattr(wasm, "put", shelf.__setitem__)
+    monkeypatch.setattr(target, "emitted", lambda *given, **named: made.append(1) or emitted(*given, **named))
+    kinds = (("float64", 1), ("float64", 1), ("float64", 1), ("int64", 1), "int64")
+    called, (double, triple) = {"called": OfferedKernel(_called.py_func, kinds)}, map(step_of, (2.0, 3.0))
+    first, again, turned = (
+        module_of(called, steps) for steps in ([double, triple], [double, triple], [triple, double])
+    )
+    renamed = module_of({"other": called["called"]}, [double, triple])
+    assert first == again and len({first, turned, renamed}) == len(made) == 3
+
+
 @pytest.fixture
 def step_of() -> Callable[[float], Any]:
     """Return a maker of blocks that multiply a signal by a factor."""
@@ -132,8 +150,6 @@ def step_of() -> Callable[[float], Any]:
 
 
 def test_a_step_that_needs_a_function_of_the_system_is_refused_by_name(monkeypatch: pytest.MonkeyPatch):
-    from core.wasm import module
-
     away = """
 declare double @tgamma(double)
 define void @"step"(ptr %p, ptr %s, ptr %w, ptr %io) {
@@ -143,8 +159,8 @@ define void @"step"(ptr %p, ptr %s, ptr %w, ptr %io) {
   ret void
 }"""
 
-    monkeypatch.setattr(module, "get", lambda _: None)
-    monkeypatch.setattr(module, "put", lambda *_: None)
+    monkeypatch.setattr(wasm, "get", lambda _: None)
+    monkeypatch.setattr(wasm, "put", lambda *_: None)
     monkeypatch.setattr(code, "translated", lambda *_: (away, True))
     from core.loop.guard import Guard
 

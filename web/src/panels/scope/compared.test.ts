@@ -37,6 +37,16 @@ it.each([
   expect(spaced(ratio)).toBe(said);
 });
 
+it("says no shift that the noise hides", () => {
+  const noise: [number, number][] = [[0.7, 1.6]];
+  const figures = { before: [1.62], after: [1.6], settled: [true], shift: [-0.17], noise };
+  const said = comparedOf([trace("model.error", { unit: "nm" })], figures, 500);
+  expect(said.map(({ measure, ratio }) => [measure, spaced(ratio)])).toEqual([
+    ["noise", "2.3 times larger"],
+    ["RMS", "1.2 % smaller"],
+  ]);
+});
+
 it("puts a shifted trace before one that stays", () => {
   const figures = { before: [2.15, 2.15], after: [2.15, 2.21], settled: [true, true], shift: [0, 0.5] };
   const traces = [trace("plant.displacement", { unit: "um" }), trace("sensor.displacement", { unit: "um" })];

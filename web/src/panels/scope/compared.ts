@@ -48,8 +48,9 @@ export function comparedOf(
     const was = before[earlier(traces, trace, tick)] ?? Number.NaN;
     const now = after?.[i] ?? Number.NaN;
     const moved = trace.drives ? 0 : (shift?.[i] ?? 0);
-    // a bias hardly changes the RMS of a sine
-    const isShifted = Math.abs(moved) > Math.max(SHIFTED * was, Math.abs(now - was));
+    const noises = trace.drives ? undefined : noise?.[i];
+    // a bias hardly changes the RMS of a sine; a bias below the noise is not to be seen
+    const isShifted = Math.abs(moved) > Math.max(SHIFTED * was, Math.abs(now - was), ...(noises ?? []));
     const change = isShifted ? moved / was : Math.log(now / was);
     const said = (from: number, to: number, by: number) => ({
       trace,
@@ -61,7 +62,6 @@ export function comparedOf(
     });
     const whole: Compared = { ...said(was, now, change), measure: "RMS" };
     if (isShifted) whole.ratio = `shifted by ${moved > 0 ? "+" : ""}${formatSi(moved, trace.unit, DIGITS)}`;
-    const noises = trace.drives ? undefined : noise?.[i];
     if (!noises) return [whole];
     // the RMS of a sine hides its noise, but not where the sine itself came or went
     if (Math.abs(change) > CHANGED) return [whole];
