@@ -57,7 +57,7 @@ class NumberedTranslation(Translation):
 
 
 @dataclass(frozen=True)
-class _Part:
+class _ModulePart:
     """A function of a module: its name on the shelf, its instructions, and how they name it."""
 
     kept_as: str
@@ -93,17 +93,17 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segm
     return kept
 
 
-def _part_of(step: Block | Segment) -> _Part:
+def _part_of(step: Block | Segment) -> _ModulePart:
     piece = segment.piece(step) if isinstance(step, tuple) else code.step(step)
-    return _Part(f"wasm-{piece.name}-{digest(piece.hash(bytecode), _own())}", piece.write)
+    return _ModulePart(f"wasm-{piece.name}-{digest(piece.hash(bytecode), _own())}", piece.write)
 
 
-def _offered(name: str, kernel: OfferedKernel) -> _Part:
+def _offered(name: str, kernel: OfferedKernel) -> _ModulePart:
     content = digest(key(kernel.function), name, kernel.kinds, compiler(), _own())
-    return _Part(f"wasm-{name}-{content}", partial(instructions, name, kernel), name)
+    return _ModulePart(f"wasm-{name}-{content}", partial(instructions, name, kernel), name)
 
 
-def _joined(offered: Sequence[_Part], steps: Sequence[Block | Segment], parts: Sequence[_Part]) -> bytes:
+def _joined(offered: Sequence[_ModulePart], steps: Sequence[Block | Segment], parts: Sequence[_ModulePart]) -> bytes:
     """Return the module of some kernels and of the steps that they call by their numbers, each a function."""
     module = target.aimed(_dispatch(len(steps)))
     for number, (step, part) in enumerate(zip(steps, parts, strict=True)):
