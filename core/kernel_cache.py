@@ -56,6 +56,15 @@ def put(name: str, code: bytes) -> None:
         shelf.put(name, marked(name, code))
 
 
+def kept_or_made(name: str, make: Callable[[], bytes]) -> bytes:
+    """Return a kernel from the shelf; if it is not there, make it and keep it."""
+    code = get(name)
+    if code is None:
+        code = make()
+        put(name, code)
+    return code
+
+
 def marked(name: str, code: bytes) -> bytes:
     """Return the file of a kernel: its mark, then its code."""
     return _mark(name, code) + code

@@ -15,7 +15,7 @@ from core.block import Block
 from core.compile.code import hash_of, instructions
 from core.compile.numbers import NAME
 from core.errors import InputError
-from core.kernel_cache import get, put
+from core.kernel_cache import kept_or_made
 from core.wasm import target
 
 OFFERED = f"""
@@ -29,12 +29,7 @@ define void @offered(ptr %p, ptr %s, ptr %w, ptr %io) "wasm-export-name"="step" 
 
 def kept(block: type[Block]) -> bytes:
     """Return the WebAssembly of a step; it is compiled, and put on the shelf, if it is not there."""
-    name = name_of(block)
-    code = get(name)
-    if code is None:
-        code = compiled(instructions(block, 1, lanes=False))
-        put(name, code)
-    return code
+    return kept_or_made(name_of(block), lambda: compiled(instructions(block, 1, lanes=False)))
 
 
 def compiled(text: str) -> bytes:

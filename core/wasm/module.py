@@ -26,7 +26,7 @@ from core.compile.numbers import BOOL, DOUBLE, FLOAT, I64, INT, NAME, CompiledNu
 from core.compile.segment import Segment
 from core.compile.translate import Translation
 from core.errors import InputError
-from core.kernel_cache import bytecode, get, key, put
+from core.kernel_cache import bytecode, kept_or_made, key
 from core.wasm import target
 
 LENT = {"fmod"}
@@ -66,13 +66,13 @@ class _ModulePart:
 
     def get(self) -> Any:
         """Return a module with this function alone, from the shelf if the shelf has it."""
-        kept = get(self.kept_as)
-        if kept is None:
-            part = target.aimed(self.write())
-            target.improve(part, {self.function}, vectors=True)
-            kept = part.as_bitcode()
-            put(self.kept_as, kept)
-        return llvm.parse_bitcode(kept)  # a new part too: its order in memory differs, and so might the module's code
+        # a new part is read back too: its order in memory differs, and so might the code of the module
+        return llvm.parse_bitcode(kept_or_made(self.kept_as, self._improved))
+
+    def _improved(self) -> bytes:
+        part = target.aimed(self.write())
+        target.improve(part, {self.function}, vectors=True)
+        return bytes(part.as_bitcode())
 
 
 def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segment]) -> bytes:
@@ -86,11 +86,7 @@ def module_of(kernels: Mapping[str, OfferedKernel], steps: Sequence[Block | Segm
     own = [_part_of(step) for step in steps]
     offered = [_offered(name, kernel) for name, kernel in kernels.items()]
     name = f"wasm-{digest(*(part.kept_as for part in (*own, *offered)))}"
-    kept = get(name)
-    if kept is None:
-        kept = _joined(offered, steps, own)
-        put(name, kept)
-    return kept
+    return kept_or_made(name, lambda: _joined(offered, steps, own))
 
 
 def _part_of(step: Block | Segment) -> _ModulePart:

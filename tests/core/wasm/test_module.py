@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core import kernel_cache
 from core.board import fold
 from core.compile import code
 from core.compile.instructions import address_of, call
@@ -15,9 +16,9 @@ from core.compile.segment import SegmentStep
 from core.errors import InputError
 from core.kernel import kernel
 from core.wall.host import machine
-from core.wasm import module as wasm
 from core.wasm import target
 from core.wasm.module import OfferedKernel, module_of
+from tests.core.compile.test_widths import MemoryShelf
 
 PAGE = 1 << 16
 PAGES = 40
@@ -115,9 +116,8 @@ def test_a_segment_is_called_by_its_number_and_runs_its_steps_in_their_order(ste
 def test_a_module_is_kept_whole_under_its_steps_in_their_order(
     step_of: Callable[[float], Any], monkeypatch: pytest.MonkeyPatch
 ):
-    shelf, made, emitted = dict[str, bytes](), [], target.emitted
-    monkeypatch.setattr(wasm, "get", shelf.get)
-    monkeypatch.setattr(wasm, "put", shelf.__setitem__)
+    made, emitted = list[int](), target.emitted
+    monkeypatch.setattr(kernel_cache, "_shelves", [MemoryShelf()])
     monkeypatch.setattr(target, "emitted", lambda *given, **named: made.append(1) or emitted(*given, **named))
     kinds = (("float64", 1), ("float64", 1), ("float64", 1), ("int64", 1), "int64")
     called, (double, triple) = {"called": OfferedKernel(_called.py_func, kinds)}, map(step_of, (2.0, 3.0))
@@ -159,8 +159,7 @@ define void @"step"(ptr %p, ptr %s, ptr %w, ptr %io) {
   ret void
 }"""
 
-    monkeypatch.setattr(wasm, "get", lambda _: None)
-    monkeypatch.setattr(wasm, "put", lambda *_: None)
+    monkeypatch.setattr(kernel_cache, "_shelves", [])
     monkeypatch.setattr(code, "translated", lambda *_: (away, True))
     from core.loop.guard import Guard
 
